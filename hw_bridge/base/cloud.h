@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "hw_bridge/base/frames.h"
+
+namespace tubetwin {
+
+/// Labels of a labelled cloud; for scoring only, the pipeline never reads them.
+inline constexpr std::uint32_t kLabelNone = 0;       ///< No return, or a mixed point.
+inline constexpr std::uint32_t kLabelCell = 1;       ///< Bin, tray, arm.
+inline constexpr std::uint32_t kLabelFirstTube = 2;  ///< 2 + k for the pile's k-th tube.
+
+/// One scan: points in raster order of the camera image, row by row from the top left.
+/// An unorganised cloud has height 1. Frame S, metres; invalid points are NaN in all three.
+struct OrganizedCloud {
+  int width = 0;
+  int height = 0;
+  std::vector<Eigen::Vector3f> p_SP;  ///< [height * width]
+  std::vector<float> intensity;       ///< [height * width] or empty; 0..1
+  std::vector<std::uint32_t> label;   ///< [height * width] or empty
+  /// Pose of the scanner in the bin as the pipeline believes it (PCD VIEWPOINT).
+  RigidTransform X_NS = RigidTransform::Identity();
+
+  std::size_t size() const { return p_SP.size(); }
+  bool organized() const { return height > 1; }
+};
+
+inline bool IsValid(const Eigen::Vector3f& p) { return p.x() == p.x(); }
+inline Eigen::Vector3f InvalidPoint() {
+  return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+}
+
+/// Reads binary, binary_compressed is refused, or ascii PCD 0.7 with fields x y z and optionally
+/// intensity and label (others are skipped). Throws Error(kMissing) when the file does not exist
+/// and Error(kBadData) naming file, byte or line, field, value and what is allowed when the header
+/// or the data is wrong, before allocating anything that the file's own size cannot fill.
+OrganizedCloud ReadPcd(const std::string& path);
+
+/// Writes binary PCD 0.7 atomically (temporary file, then rename). Throws Error(kCannotCreate |
+/// kIo).
+void WritePcd(const OrganizedCloud& cloud, const std::string& path);
+
+/// Writes binary little-endian PLY (vertex x y z [intensity] [label], then PhoXi's `camera` element
+/// with the pose). Throws like WritePcd.
+void WritePly(const OrganizedCloud& cloud, const std::string& path);
+
+}  // namespace tubetwin

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tubetwin {
+
+/// Closed interval of allowed values.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+};
+
+/// Visits the fields of a configuration struct. Each struct has defaults at its members and one
+/// template-free `void Visit(ConfigVisitor&)` that lists them once; reading, writing, the schema
+/// and validation all go through that list.
+class ConfigVisitor {
+ public:
+  virtual ~ConfigVisitor() = default;
+  virtual void Field(const char* key, const char* doc, bool& value) = 0;
+  virtual void Field(const char* key, const char* doc, std::int64_t& value, Range allowed = {}) = 0;
+  virtual void Field(const char* key, const char* doc, double& value, Range allowed = {}) = 0;
+  virtual void Field(const char* key, const char* doc, std::string& value) = 0;
+  /// One of `allowed`.
+  virtual void Choice(const char* key, const char* doc, std::string& value,
+                      const std::vector<std::string>& allowed) = 0;
+  /// A list of numbers; `count` 0 means any length.
+  virtual void Field(const char* key, const char* doc, std::vector<double>& value, int count = 0,
+                     Range allowed = {}) = 0;
+  virtual void Field(const char* key, const char* doc, std::vector<std::string>& value) = 0;
+  /// A table below this one.
+  virtual void Section(const char* key, const char* doc,
+                       const std::function<void(ConfigVisitor&)>& visit) = 0;
+
+  void Field(const char* key, const char* doc, int& value, Range allowed = {}) {
+    std::int64_t wide = value;
+    if (allowed.low < -2147483648.0) allowed.low = -2147483648.0;
+    if (allowed.high > 2147483647.0) allowed.high = 2147483647.0;
+    Field(key, doc, wide, allowed);
+    value = static_cast<int>(wide);
+  }
+  template <std::size_t N>
+  void Field(const char* key, const char* doc, std::array<double, N>& value, Range allowed = {}) {
+    std::vector<double> list(value.begin(), value.end());
+    Field(key, doc, list, static_cast<int>(N), allowed);
+    for (std::size_t i = 0; i < N; ++i) value[i] = list[i];
+  }
+  template <class Config>
+  void Section(const char* key, const char* doc, Config& config) {
+    Section(key, doc,
+            std::function<void(ConfigVisitor&)>([&config](ConfigVisitor& v) { config.Visit(v); }));
+  }
+};
+
+/// TOML layers: files, then `a.b=value` texts, each overriding the ones before.
+class ConfigSource {
+ public:
+  ConfigSource();
+  ~ConfigSource();
+  ConfigSource(ConfigSource&&) noexcept;
+  ConfigSource& operator=(ConfigSource&&) noexcept;
+
+  /// Throws Error(kMissing) or, for bad syntax, Error(kConfig) with file:line:column.
+  void AddFile(const std::string& path);
+  /// "planner.exclude_free=true"; a value that is no TOML is taken as a text.
+  void AddOverride(const std::string& text);
+  /// TOML text under a name used in errors.
+  void AddText(const std::string& toml, const std::string& name);
+
+  /// Sets the fields of a config from the layers. Throws Error(kConfig) for an unknown key (naming
+  /// the nearest), a wrong type or a value outside its range, with file:line:column.
+  template <class Config>
+  void ReadInto(Config& config) const {
+    Read([&config](ConfigVisitor& v) { config.Visit(v); });
+  }
+  void Read(const std::function<void(ConfigVisitor&)>& visit) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The config as TOML text, every key with its value; with `with_docs` each key under its comment.
+std::string WriteToml(const std::function<void(ConfigVisitor&)>& visit, bool with_docs);
+
+/// JSON Schema (draft 2020-12) of the config: type, allowed values, default and doc of every key.
+std::string WriteConfigSchema(const std::function<void(ConfigVisitor&)>& visit);
+
+}  // namespace tubetwin

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <functional>
+
+namespace tubetwin {
+
+/// How many threads a call may use; one unless the caller says otherwise. Results never depend on
+/// it.
+struct Parallelism {
+  int threads = 1;
+  /// All cores of this machine.
+  static Parallelism All();
+};
+
+/// Calls `body(index, worker)` once for every index in [0, count), `worker` in [0, threads).
+/// Returns when all have run; joins its threads. The exception of the lowest failing index is
+/// rethrown. Results must be written per index, scratch kept per worker.
+void ParallelFor(int count, Parallelism parallelism,
+                 const std::function<void(int index, int worker)>& body);
+
+}  // namespace tubetwin

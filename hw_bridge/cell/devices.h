@@ -1,0 +1,120 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "hw_bridge/base/cloud.h"
+#include "hw_bridge/base/joint.h"
+#include "hw_bridge/base/time.h"
+#include "hw_bridge/base/wrench.h"
+#include "hw_bridge/cell/checked_trajectory.h"
+
+namespace tubetwin {
+
+// Devices never block: commands start something and return, State() and Read() sample. Only
+// CellClock::AdvanceTo lets time pass. All of them belong to one thread, that of the pick cycle.
+
+/// The one thing that lets time pass: the twin steps its physics, a real cell sleeps, a replay
+/// reads on.
+class CellClock {
+ public:
+  virtual ~CellClock() = default;
+  virtual TimeNs Now() const = 0;
+  /// Returns when Now() >= t. A time in the past does nothing.
+  virtual void AdvanceTo(TimeNs t) = 0;
+};
+
+enum class ArmMode {
+  kDisconnected,
+  kIdle,
+  kReady,
+  kMoving,
+  kHolding,
+  kProtectiveStop,
+  kEmergencyStop,
+  kFault
+};
+const char* ToString(ArmMode mode);
+
+struct ArmState {
+  TimeNs time{0};
+  ArmMode mode = ArmMode::kReady;
+  JointVector q = JointVector::Zero();  ///< Measured, rad.
+  JointVector qd = JointVector::Zero();
+  double progress_s = 0.0;  ///< Time along the running (or last) trajectory.
+  bool done = true;         ///< The last trajectory was run to its end.
+  std::string fault;        ///< Text when mode is a stop or fault.
+};
+
+/// Answer to a command. Rejected guarantees that nothing moves.
+struct CommandResult {
+  enum class Status { kAccepted, kRejected } status = Status::kAccepted;
+  std::string reason;  ///< Why rejected, with where.
+  bool accepted() const { return status == Status::kAccepted; }
+};
+
+enum class StopKind { kOnPath, kFast };
+
+class Arm {
+ public:
+  virtual ~Arm() = default;
+  virtual ArmState State() const = 0;
+  /// Starts a trajectory. Rejected when not ready, still moving, or when the arm is further than
+  /// 0.2 degrees from its first point.
+  [[nodiscard]] virtual CommandResult Start(const CheckedTrajectory& trajectory) = 0;
+  /// Streamed points after the running ones. Rejected when nothing runs or times do not continue.
+  [[nodiscard]] virtual CommandResult Append(const CheckedTrajectory& continuation) = 0;
+  /// Ends the motion: on the path with a ramp, or as fast as the limits allow.
+  virtual void Stop(StopKind kind) = 0;
+  /// What the fingers carry besides the empty tool: for feed-forward. p_FC: centre of mass.
+  virtual void SetPayload(double mass_kg, const Vector3& p_FC) = 0;
+};
+
+struct GripperCommand {
+  double opening_m = 0.085;  ///< Target between the pads.
+  double speed_m_s = 0.10;
+  double force_N = 60.0;  ///< Per pad.
+};
+
+enum class GripperObject { kMoving, kContactOpening, kContactClosing, kAtPosition };
+struct GripperState {
+  TimeNs time{0};
+  bool activated = true;
+  GripperObject object = GripperObject::kAtPosition;
+  double opening_m = 0.085;  ///< Quantised like the real register (about 0.37 mm).
+  double requested_m = 0.085;
+  int fault = 0;  ///< Register gFLT.
+};
+
+class Gripper {
+ public:
+  virtual ~Gripper() = default;
+  virtual void Command(const GripperCommand& command) = 0;
+  virtual GripperState State() const = 0;
+};
+
+struct WrenchSample {
+  TimeNs time{0};
+  Wrench wrench_K;  ///< Load on the sensor, see Wrench. Not tared.
+  bool saturated = false;
+};
+
+class ForceTorqueSensor {
+ public:
+  virtual ~ForceTorqueSensor() = default;
+  virtual WrenchSample Read() const = 0;  ///< Newest sample, 1 kHz.
+};
+
+enum class ScanStatus { kIdle, kBusy, kReady, kFailed };
+class Scanner {
+ public:
+  virtual ~Scanner() = default;
+  /// Starts a scan from where the scanner is now. Rejected while busy.
+  [[nodiscard]] virtual CommandResult Trigger() = 0;
+  virtual ScanStatus Status() const = 0;
+  /// The finished scan, once; its X_NS is the pose the pipeline believes. Precondition: kReady.
+  virtual OrganizedCloud Take() = 0;
+  virtual std::string FailureReason() const { return {}; }
+};
+
+}  // namespace tubetwin

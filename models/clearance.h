@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/base/joint.h"
+#include "hw_bridge/base/polyline.h"
+#include "models/arm.h"
+#include "models/bin.h"
+#include "models/layout.h"
+
+namespace tubetwin {
+
+/// A capsule-chain obstacle or load, for example a tube in the fingers.
+struct CapsuleChain {
+  Polyline line;  ///< Frame by use.
+  double radius_m = 0.0;
+};
+
+/// Distances of arm, tool, scanner housing and palm against bin, tray, column, cell plate and each
+/// other (FCL, boxes and capsules only). Fingers against the bin are checked too, with the pads'
+/// opening. Immutable after construction; const calls are thread safe.
+class ClearanceChecker {
+ public:
+  ClearanceChecker(const ArmModel& arm, const CellLayout& layout, const Bin& bin);
+  ~ClearanceChecker();
+
+  struct Result {
+    double clearance_m = 0.0;  ///< Smallest signed distance; negative or zero means contact.
+    std::string moving;        ///< Names of the nearest pair, for messages.
+    std::string obstacle;
+  };
+  /// Smallest clearance at q, at most `enough_m` (search stops there). `opening_m`: gripper.
+  Result Check(const JointVector& q, double opening_m, double enough_m = 0.05) const;
+
+  /// Boxes and capsules of the moving bodies, for the twin's collision and looks: one list.
+  struct Shape {
+    enum class Kind { kBox, kCapsule, kCylinder, kSphere } kind = Kind::kBox;
+    std::string name;
+    int link = 0;  ///< 0 base, 1..6 links, 7 flange (tool, scanner).
+    RigidTransform X_LinkShape = RigidTransform::Identity();
+    Vector3 size_m =
+        Vector3::Zero();  ///< box: half sizes; capsule, cylinder: radius, half length (z).
+    bool scanner = false;
+  };
+  static std::vector<Shape> ArmShapes(const ArmModel& arm, const CellLayout& layout);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tubetwin

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "hw_bridge/base/frames.h"
+#include "models/bin.h"
+
+namespace tubetwin {
+
+/// Where things stand in the cell and how the tools hang on the flange. Metres, frame B.
+/// From the reach study: every point of the bin and the tray is reached with the tool vertical, and
+/// at the tilt station the tool tilts 45 degrees about any horizontal axis through E.
+struct CellLayout {
+  // Tool stack.
+  RigidTransform X_FK = Translation(0, 0, 0.033);  ///< Sensor's tool face.
+  RigidTransform X_FE = Translation(0, 0, 0.177);  ///< Between the closed pads.
+  /// Scanner camera on a bracket at the flange above the sensor's tool face: it is not weighed.
+  RigidTransform X_FS = Translation(0, 0.115, 0.060);
+
+  // Tray: surface centre, axes along B.
+  RigidTransform X_BT = Translation(0.05, -0.78, 0.10);
+  double tray_size_m = 0.60;    ///< Square surface.
+  double tray_zone_m = 0.40;    ///< Square that E may reach.
+  double slot_pitch_m = 0.055;  ///< Distance of neighbouring slots along the tray's x.
+
+  /// E at the tilt station (pads pointing down).
+  Vector3 p_BTilt = Vector3(0.60, 0.0, 0.575);
+
+  /// E's height over the bin floor while carrying.
+  double carry_height_m = 0.45;
+};
+
+/// One place to scan from: scanner pose in B, camera looking straight down, image x along B's x.
+/// The long image side lies along B's x.
+std::vector<RigidTransform> DefaultScanPoses(const Bin& bin);
+
+/// Masses below the sensor's tool face, for the tare and for payload. kg, position in K.
+inline constexpr double kGripperMass_kg = 0.93;
+inline constexpr double kCouplingMass_kg = 0.10;
+
+}  // namespace tubetwin

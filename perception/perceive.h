@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "hw_bridge/base/cloud.h"
+#include "hw_bridge/base/config.h"
+#include "hw_bridge/base/parallel.h"
+#include "models/bin.h"
+#include "models/part.h"
+#include "perception/tube_scene.h"
+
+namespace tubetwin {
+
+/// Config table [perception]. Lengths in metres. Defaults are for the scanner of the cell.
+struct PerceptionConfig {
+  std::string profile = "best";
+  void Visit(ConfigVisitor& v);  // more keys in perceive.cc's own struct are welcome here
+};
+
+/// Tubes and crossings from clouds alone: axis-space method and joining by matching with vetoes.
+/// `views`: at least one, organised or not, each with the pose that is believed. Radius and length
+/// come from `part`. Never reads labels. Results do not depend on the thread count.
+TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, const Bin& bin,
+                   const PerceptionConfig& config, Parallelism parallelism);
+
+}  // namespace tubetwin

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/base/json.h"
+#include "hw_bridge/base/polyline.h"
+
+namespace tubetwin {
+
+enum class TubeClass { kFree, kWeak, kStrong };
+const char* ToString(TubeClass c);
+
+/// A tube as the pipeline sees it. Frame N.
+struct PerceivedTube {
+  int id = 0;
+  Polyline centerline_N;  ///< Nodes at most 10 mm apart, hidden parts bridged.
+  double radius_m = 0.0;
+  double length_m = 0.0;          ///< Of the centerline, rounded ends included.
+  double visible_fraction = 0.0;  ///< Of the length.
+  double confidence = 0.0;        ///< 0..1, from fit, bridges and the length prior.
+  TubeClass tube_class = TubeClass::kFree;
+  std::vector<int> over;  ///< Ids of tubes that this one lies over, sorted, unique.
+  std::vector<int> under;
+  std::vector<char> node_visible;  ///< [centerline_N.size()] 1 where points were seen.
+};
+
+/// One place where tube `over` covers tube `under`.
+struct Crossing {
+  int over = 0, under = 0;
+  double at_over_m = 0.0, at_under_m = 0.0;  ///< Arc length from the first centerline node.
+  double gap_m = 0.0;                        ///< Vertical distance of axes less both radii.
+  double confidence = 0.0;
+};
+
+/// All that perception says about one look into the bin.
+struct TubeScene {
+  std::vector<PerceivedTube> tubes;
+  std::vector<Crossing> crossings;
+  double unseen_m3 = 0.0;  ///< Volume over the floor that no view saw into.
+  double unseen_floor_m2 = 0.0;
+  int unexplained_points = 0;  ///< Points above the floor that belong to no tube (thinned count).
+  struct Timing {
+    double load = 0, filter = 0, segment = 0, fit = 0, join = 0, crossings = 0, total = 0;
+  } timing_ms;  ///< Wall time; left out of comparisons.
+  int threads = 1;
+};
+
+/// Under/over runs, classes and the lists of ids, from centerlines alone: a tube is under another
+/// once per run of its samples that the other covers (within r horizontally, more than r above); 0
+/// free, 1 weak, 2 or more strong. Used on perceived and on true tubes alike.
+std::vector<Crossing> FindCrossings(const std::vector<Polyline>& lines_N, double radius_m);
+void AssignClasses(TubeScene& scene, double radius_m);
+
+Json ToJson(const TubeScene& scene);
+TubeScene TubeSceneFromJson(const JsonView& document);
+
+}  // namespace tubetwin

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "hw_bridge/base/parallel.h"
+#include "hw_bridge/cell/cell.h"
+#include "models/physics.h"
+#include "scenes/pile.h"
+#include "twin/render/scan_geometry.h"
+
+namespace tubetwin {
+
+struct TwinCellOptions {
+  CellLayout layout;
+  RoundPhysics physics;
+  std::uint64_t seed = 1;  ///< Of noise streams.
+  std::uint64_t round = 0;
+  ScanSettings scan;
+  Parallelism parallelism;  ///< For ray casting only.
+};
+
+/// The simulated cell: arm, gripper, sensor, scanner, bin, tray and tubes in one MuJoCo world at 1
+/// kHz. The devices share the world and let time pass only through the cell's clock. One thread.
+class TwinCell {
+ public:
+  TwinCell(const Pile& pile, const TwinCellOptions& options);
+  ~TwinCell();
+  Cell& cell();
+
+  /// Called after every 1/30 s of simulated time, at exactly k/30 s rounded to the step; for
+  /// recordings. Must not change the world.
+  void SetFrameObserver(std::function<void()> observer);
+
+  /// The compiled model as XML (cell.xml).
+  std::string ModelXml() const;
+  /// Generalised positions of the whole world now (layout of ModelXml's model).
+  std::vector<double> Qpos() const;
+
+ private:
+  friend class Truth;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tubetwin

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/base/parallel.h"
+#include "hw_bridge/base/polyline.h"
+#include "hw_bridge/base/wrench.h"
+#include "models/bin.h"
+#include "perception/tube_scene.h"
+
+namespace tubetwin {
+
+/// What a round looked like, 30 times per simulated second: enough for pictures and films, not for
+/// physics. Frame k is due at exactly k/30 s.
+struct Recording {
+  static constexpr int kFramesPerSecond = 30;
+  /// Perceived tubes (frame N) and the chosen one, drawn over the picture until the next overlay.
+  struct Overlay {
+    std::vector<Polyline> lines_N;
+    std::vector<TubeClass> classes;
+    int target = -1;  ///< Index in lines_N.
+  };
+  struct Frame {
+    std::vector<float> qpos;  ///< [nq] of the cell's model.
+    float force_N = 0;        ///< Tared load along gravity.
+    int overlay = -1;         ///< Index in overlays, -1 none.
+    int caption = -1;         ///< Index in captions.
+  };
+  std::string cell_xml;  ///< The compiled cell, as in the result folder.
+  Bin bin;
+  std::vector<Overlay> overlays;
+  std::vector<std::string> captions;
+  std::vector<Frame> frames;
+};
+
+/// One zstd-compressed file: a JSON head, then the frames as raw floats.
+void WriteRecording(const Recording& recording, const std::string& path);
+/// Throws Error(kMissing | kBadData).
+Recording ReadRecording(const std::string& path);
+
+/// Film 1280 x 720, 30 fps of simulated time (H.264 mp4), with perceived centerlines in class
+/// colours, caption and force trace. Every `stride`-th frame is drawn, played at stride x speed
+/// when > 1. Throws Error(kDevice) when there is no EGL, naming the package that brings it.
+void RenderFilm(const Recording& recording, const std::string& path, int stride,
+                Parallelism parallelism);
+
+/// One picture of one frame of a recording (PNG).
+void RenderPicture(const Recording& recording, int frame, const std::string& path);
+
+}  // namespace tubetwin
