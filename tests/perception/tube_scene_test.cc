@@ -1,0 +1,159 @@
+#include "perception/tube_scene.h"
+
+#include "hw_bridge/base/error.h"
+#include "tests/support/catch.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kRadius = 0.0125;
+/// The rule is sampled every millimetre, so positions along a curve are this exact.
+constexpr double kSampleTolerance_m = 0.0011;
+
+TubeScene SceneOf(const std::vector<Polyline>& lines_N) {
+  TubeScene scene;
+  for (std::size_t i = 0; i < lines_N.size(); ++i) {
+    PerceivedTube tube;
+    tube.id = static_cast<int>(10 * (i + 1));
+    tube.centerline_N = lines_N[i];
+    tube.radius_m = kRadius;
+    tube.length_m = Length(lines_N[i]) + 2 * kRadius;
+    tube.visible_fraction = 0.5;
+    tube.confidence = 0.75;
+    tube.node_visible.assign(lines_N[i].size(), 1);
+    tube.node_visible[0] = 0;
+    scene.tubes.push_back(tube);
+  }
+  AssignClasses(scene, kRadius);
+  return scene;
+}
+
+/// A straight tube along x at height z, from x = -0.2 to 0.2, at y.
+Polyline AlongX(double y, double z) { return {{-0.2, y, z}, {0.2, y, z}}; }
+
+TEST_CASE("Two crossing tubes give one crossing at the place where they cross", "[unit]") {
+  const Polyline low = AlongX(0.0, kRadius);
+  const Polyline high = {{0.05, -0.1, 3 * kRadius}, {0.05, 0.3, 3 * kRadius}};
+  const auto crossings = FindCrossings({low, high}, kRadius);
+  REQUIRE(crossings.size() == 1);
+  CHECK(crossings[0].over == 1);
+  CHECK(crossings[0].under == 0);
+  CHECK(crossings[0].at_under_m == Approx(0.25).margin(kSampleTolerance_m));
+  CHECK(crossings[0].at_over_m == Approx(0.10).margin(kSampleTolerance_m));
+  CHECK(crossings[0].gap_m == Approx(0.0).margin(1e-12));
+}
+
+TEST_CASE("A hook is under its partner and over it", "[unit]") {
+  const Polyline wave = {{-0.2, 0, 0.01}, {0.0, 0, 0.05}, {0.2, 0, 0.09}};
+  const Polyline bridge = {
+      {-0.1, -0.1, 0.05}, {-0.1, 0.1, 0.05}, {0.1, 0.1, 0.05}, {0.1, -0.1, 0.05}};
+  const TubeScene scene = SceneOf({wave, bridge});
+  REQUIRE(scene.crossings.size() == 2);
+  CHECK(scene.tubes[0].tube_class == TubeClass::kWeak);
+  CHECK(scene.tubes[1].tube_class == TubeClass::kWeak);
+  CHECK(scene.tubes[0].over == std::vector<int>{20});
+  CHECK(scene.tubes[0].under == std::vector<int>{20});
+  CHECK(scene.tubes[1].over == std::vector<int>{10});
+  CHECK(scene.tubes[1].under == std::vector<int>{10});
+}
+
+TEST_CASE("A tube that another crosses twice is strong", "[unit]") {
+  const Polyline low = AlongX(0.0, kRadius);
+  const Polyline u = {{-0.1, -0.1, 0.05}, {-0.1, 0.1, 0.05}, {0.1, 0.1, 0.05}, {0.1, -0.1, 0.05}};
+  const TubeScene scene = SceneOf({low, u});
+  REQUIRE(scene.crossings.size() == 2);
+  CHECK(scene.tubes[0].tube_class == TubeClass::kStrong);
+  CHECK(scene.tubes[0].under == std::vector<int>{20});
+  CHECK(scene.tubes[1].tube_class == TubeClass::kFree);
+}
+
+TEST_CASE("Tubes that touch side by side are both free", "[unit]") {
+  const TubeScene scene = SceneOf({AlongX(0.0, kRadius), AlongX(2 * kRadius, kRadius)});
+  CHECK(scene.crossings.empty());
+  CHECK(scene.tubes[0].tube_class == TubeClass::kFree);
+  CHECK(scene.tubes[1].tube_class == TubeClass::kFree);
+}
+
+TEST_CASE("A tube stacked on another covers it in a single run", "[unit]") {
+  const auto crossings =
+      FindCrossings({AlongX(0.0, 0.03), AlongX(0.002, 0.03 + 2 * kRadius)}, kRadius);
+  REQUIRE(crossings.size() == 1);
+  CHECK(crossings[0].under == 0);
+}
+
+TEST_CASE("The limits of the rule are one radius sideways and one radius up", "[unit]") {
+  const Polyline low = AlongX(0.0, 0.02);
+  CHECK(FindCrossings({low, AlongX(0.99 * kRadius, 0.02 + 1.01 * kRadius)}, kRadius).size() == 1);
+  CHECK(FindCrossings({low, AlongX(1.01 * kRadius, 0.02 + 1.01 * kRadius)}, kRadius).empty());
+  CHECK(FindCrossings({low, AlongX(0.99 * kRadius, 0.02 + 0.99 * kRadius)}, kRadius).empty());
+}
+
+TEST_CASE("A tube that crosses itself is not under another", "[unit]") {
+  const Polyline loop = {
+      {-0.2, 0, 0.01}, {0.1, 0, 0.01}, {0.1, 0.1, 0.03}, {0, 0.1, 0.05}, {0, -0.1, 0.05}};
+  const TubeScene scene = SceneOf({loop, AlongX(0.3, kRadius)});
+  CHECK(scene.crossings.empty());
+  CHECK(scene.tubes[0].tube_class == TubeClass::kFree);
+}
+
+TEST_CASE("A steep end that stands over a tube covers it only where it is high enough", "[unit]") {
+  const Polyline low = AlongX(0.0, 0.02);
+  const Polyline steep = {{0.0, 0.0, 0.021}, {0.005, 0.0, 0.2}};
+  const auto crossings = FindCrossings({low, steep}, kRadius);
+  REQUIRE(crossings.size() == 1);
+  CHECK(crossings[0].at_over_m > 0.01);
+}
+
+TEST_CASE("A scene survives writing and reading", "[unit]") {
+  TubeScene scene = SceneOf({AlongX(0.0, kRadius), {{0.05, -0.1, 0.04}, {0.05, 0.3, 0.04}}});
+  scene.unseen_m3 = 0.0125;
+  scene.unseen_floor_m2 = 0.25;
+  scene.unexplained_points = 17;
+  scene.timing_ms.total = 12.5;
+  scene.threads = 2;
+  const Json json = ToJson(scene);
+  CHECK(json["schema"] == "tubetwin/tubes/1");
+  CHECK(json["frame"] == "bin");
+  CHECK(json["tubes"][0]["class"] == "weak");
+  const TubeScene back = TubeSceneFromJson(JsonView(json, "scene"));
+  CHECK(ToJson(back) == json);
+  REQUIRE(back.tubes.size() == 2);
+  CHECK(back.tubes[0].id == 10);
+  CHECK(back.tubes[0].node_visible[0] == 0);
+  CHECK(back.crossings[0].over == 20);
+  CHECK(back.crossings[0].confidence == scene.crossings[0].confidence);
+}
+
+/// What TubeSceneFromJson says about a document, or "".
+std::string MessageOf(const Json& json) {
+  try {
+    TubeSceneFromJson(JsonView(json, "t.json"));
+  } catch (const Error& e) {
+    CHECK(e.kind() == ErrorKind::kBadData);
+    return e.what();
+  }
+  return "";
+}
+
+TEST_CASE("Wrong scene files are refused with the field, the value and what is allowed", "[unit]") {
+  const Json good =
+      ToJson(SceneOf({AlongX(0.0, kRadius), {{0.05, -0.1, 0.04}, {0.05, 0.3, 0.04}}}));
+  Json bad = good;
+  bad["tubes"][1]["class"] = "loose";
+  CHECK(MessageOf(bad) == "t.json: tubes[1].class: is 'loose', allowed are free, weak, strong");
+  bad = good;
+  bad["tubes"][1]["id"] = 10;
+  CHECK(MessageOf(bad) == "t.json: tubes[1].id: is 10, which another tube has already");
+  bad = good;
+  bad["crossings"][0]["under"] = 5;
+  CHECK(MessageOf(bad) == "t.json: crossings[0].under: names no tube of this file");
+  bad = good;
+  bad["frame"] = "base";
+  CHECK(MessageOf(bad) == "t.json: frame: is 'base', 'bin' is needed");
+  bad = good;
+  bad["tubes"][0]["centerline_m"] = Json::array({Json::array({0, 0, 0})});
+  CHECK(MessageOf(bad) == "t.json: tubes[0].centerline_m: two points are needed");
+}
+
+}  // namespace
+}  // namespace tubetwin
