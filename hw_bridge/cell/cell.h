@@ -34,8 +34,10 @@ WaitOutcome WaitForArm(Cell& cell);
 /// Runs `trajectory` and waits. A rejected start is kFault with its reason.
 WaitOutcome RunTrajectory(Cell& cell, const CheckedTrajectory& trajectory);
 
-/// Same, but stops on the path as soon as |force along the motion| (bias taken at the start, 5 ms
-/// mean) exceeds `force_limit_N` for three samples.
+/// Same, but stops on the path as soon as |force along the motion of E| (5 ms mean, less the mean
+/// of the 5 ms before the start) exceeds `force_limit_N` for three samples. The tool's weight is in
+/// that bias, so the motion must keep the tool's orientation. kContact: progress_s tells how far
+/// along the path the arm came to rest.
 WaitOutcome RunGuarded(Cell& cell, const CheckedTrajectory& trajectory, double force_limit_N);
 
 /// Commands the gripper and waits until it is at its position or has met something (5 s at most).
@@ -47,8 +49,8 @@ Wrench AverageWrench(Cell& cell, double duration_s);
 /// Lets `duration_s` pass.
 void Wait(Cell& cell, double duration_s);
 
-/// Triggers and waits for the cloud. Throws Error(kDevice) when the scanner fails or needs over 30
-/// s.
+/// Triggers and waits for the cloud. Throws Error(kDevice) when the scanner refuses, fails or needs
+/// over 30 s.
 OrganizedCloud Scan(Cell& cell);
 
 }  // namespace tubetwin

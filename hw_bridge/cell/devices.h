@@ -42,6 +42,7 @@ struct ArmState {
   JointVector q = JointVector::Zero();  ///< Measured, rad.
   JointVector qd = JointVector::Zero();
   double progress_s = 0.0;  ///< Time along the running (or last) trajectory.
+  double planned_s = 0.0;   ///< Duration of that trajectory with what was appended.
   bool done = true;         ///< The last trajectory was run to its end.
   std::string fault;        ///< Text when mode is a stop or fault.
 };
@@ -89,6 +90,8 @@ struct GripperState {
 class Gripper {
  public:
   virtual ~Gripper() = default;
+  /// Values outside the gripper's range are clamped to it. From here on State() says kMoving until
+  /// the fingers stand still again.
   virtual void Command(const GripperCommand& command) = 0;
   virtual GripperState State() const = 0;
 };
