@@ -37,18 +37,30 @@ inline Eigen::Vector3f InvalidPoint() {
   return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 }
 
-/// Reads binary, binary_compressed is refused, or ascii PCD 0.7 with fields x y z and optionally
-/// intensity and label (others are skipped). Throws Error(kMissing) when the file does not exist
-/// and Error(kBadData) naming file, byte or line, field, value and what is allowed when the header
-/// or the data is wrong, before allocating anything that the file's own size cannot fill.
+/// Reads binary or ascii PCD 0.7 (binary_compressed is refused), metres, with fields x y z and
+/// optionally intensity and label (others are skipped). Throws Error(kMissing) when the file does
+/// not exist and Error(kBadData) naming file, byte or line, field, value and what is allowed when
+/// the header or the data is wrong, before allocating anything that the file's own size cannot
+/// fill.
 OrganizedCloud ReadPcd(const std::string& path);
 
 /// Writes binary PCD 0.7 atomically (temporary file, then rename). Throws Error(kCannotCreate |
 /// kIo).
 void WritePcd(const OrganizedCloud& cloud, const std::string& path);
 
-/// Writes binary little-endian PLY (vertex x y z [intensity] [label], then PhoXi's `camera` element
-/// with the pose). Throws like WritePcd.
+/// Writes binary little-endian PLY in metres: vertex x y z [intensity] [label] in raster order and
+/// frame S (invalid points 0 0 0, as PhoXi writes them), then PhoXi's elements `camera` (X_NS:
+/// position and axes of S) and `phoxi_frame_params` (width and height). Throws like WritePcd.
 void WritePly(const OrganizedCloud& cloud, const std::string& path);
+
+/// Reads ascii or binary little-endian PLY. Units: metres, unless the header says `comment units
+/// mm` or has PhoXi's element `phoxi_frame_params` without a units comment (that vendor's files are
+/// in millimetres). With `comment frame S` (our own files) vertices are in S and `camera` is X_NS;
+/// otherwise vertices and camera share the file's frame, which becomes N, and points are moved into
+/// S. Without frame parameters the cloud is unorganised. Throws like ReadPcd.
+OrganizedCloud ReadPly(const std::string& path);
+
+/// ReadPcd or ReadPly by the ending .pcd or .ply (any case). Throws Error(kBadData) for another.
+OrganizedCloud ReadCloud(const std::string& path);
 
 }  // namespace tubetwin

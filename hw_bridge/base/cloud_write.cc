@@ -1,0 +1,112 @@
+#include <cstring>
+
+#include "hw_bridge/base/cloud.h"
+#include "hw_bridge/base/cloud_file.h"
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/text.h"
+
+namespace tubetwin {
+namespace {
+
+void CheckShape(const OrganizedCloud& cloud) {
+  const std::size_t n = cloud.size();
+  TT_CHECK(n > 0 && static_cast<std::size_t>(cloud.width) * cloud.height == n);
+  TT_CHECK(cloud.intensity.empty() || cloud.intensity.size() == n);
+  TT_CHECK(cloud.label.empty() || cloud.label.size() == n);
+}
+
+struct PcdRecord {
+  float x, y, z;
+};
+
+void FillPcd(const OrganizedCloud& cloud, std::size_t i, char* out) {
+  const Eigen::Vector3f& p = cloud.p_SP[i];
+  const PcdRecord record = {p.x(), p.y(), p.z()};
+  std::memcpy(out, &record, sizeof record);
+  out += sizeof record;
+  if (!cloud.intensity.empty()) {
+    std::memcpy(out, &cloud.intensity[i], 4);
+    out += 4;
+  }
+  if (!cloud.label.empty()) std::memcpy(out, &cloud.label[i], 4);
+}
+
+void FillPly(const OrganizedCloud& cloud, std::size_t i, char* out) {
+  const Eigen::Vector3f& p = cloud.p_SP[i];
+  const Eigen::Vector3f stored = IsValid(p) ? p : Eigen::Vector3f(0, 0, 0);
+  std::memcpy(out, stored.data(), 12);
+  out += 12;
+  if (!cloud.intensity.empty()) {
+    std::memcpy(out, &cloud.intensity[i], 4);
+    out += 4;
+  }
+  if (!cloud.label.empty()) std::memcpy(out, &cloud.label[i], 4);
+}
+
+template <class T>
+void Append(std::string& out, T value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+}  // namespace
+
+void WritePcd(const OrganizedCloud& cloud, const std::string& path) {
+  CheckShape(cloud);
+  const std::size_t n = cloud.size();
+  const bool intensity = !cloud.intensity.empty(), label = !cloud.label.empty();
+  const auto q = QuaternionWxyz(cloud.X_NS.linear());
+  const Vector3 p_NS = cloud.X_NS.translation();
+  std::string view;
+  for (const double v : {p_NS.x(), p_NS.y(), p_NS.z(), q[0], q[1], q[2], q[3]}) {
+    view += " " + Number(v);
+  }
+  const std::string i4 = intensity ? " 4" : "", l4 = label ? " 4" : "";
+  const std::string i1 = intensity ? " 1" : "", l1 = label ? " 1" : "";
+  const std::string header =
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z" +
+      std::string(intensity ? " intensity" : "") + (label ? " label" : "") + "\nSIZE 4 4 4" + i4 +
+      l4 + "\nTYPE F F F" + (intensity ? " F" : "") + (label ? " U" : "") + "\nCOUNT 1 1 1" + i1 +
+      l1 + "\nWIDTH " + std::to_string(cloud.width) + "\nHEIGHT " + std::to_string(cloud.height) +
+      "\nVIEWPOINT" + view + "\nPOINTS " + std::to_string(n) + "\nDATA binary\n";
+  const std::size_t record_size = 12 + (intensity ? 4 : 0) + (label ? 4 : 0);
+  WriteRecords(path, header, n, record_size, "", FillPcd, cloud);
+}
+
+void WritePly(const OrganizedCloud& cloud, const std::string& path) {
+  CheckShape(cloud);
+  const std::size_t n = cloud.size();
+  std::string header =
+      "ply\nformat binary_little_endian 1.0\ncomment units m\n"
+      "comment frame S (x right, y down, z forward); camera is the pose of S in the bin\n"
+      "element vertex " +
+      std::to_string(n) + "\nproperty float x\nproperty float y\nproperty float z\n";
+  if (!cloud.intensity.empty()) header += "property float intensity\n";
+  if (!cloud.label.empty()) header += "property uint label\n";
+  header += "element camera 1\n";
+  for (const char* name : {"view_p", "x_axis", "y_axis", "z_axis"}) {
+    for (const char axis : {'x', 'y', 'z'}) {
+      header += std::string("property double ") + name + axis + "\n";
+    }
+  }
+  header +=
+      "element phoxi_frame_params 1\nproperty uint frame_width\nproperty uint frame_height\n"
+      "property uint frame_index\nproperty float frame_start_time\nproperty float frame_duration\n"
+      "property float frame_computation_duration\nproperty float frame_transfer_duration\n"
+      "property int total_scan_count\nend_header\n";
+  std::string trailer;
+  const Matrix3 R_NS = cloud.X_NS.linear();
+  for (int r = 0; r < 3; ++r) Append(trailer, cloud.X_NS.translation()[r]);
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) Append(trailer, R_NS(r, c));
+  }
+  Append(trailer, static_cast<std::uint32_t>(cloud.width));
+  Append(trailer, static_cast<std::uint32_t>(cloud.height));
+  Append(trailer, std::uint32_t{0});
+  for (int i = 0; i < 4; ++i) Append(trailer, 0.0f);
+  Append(trailer, std::int32_t{1});
+  const std::size_t record_size =
+      12 + (cloud.intensity.empty() ? 0 : 4) + (cloud.label.empty() ? 0 : 4);
+  WriteRecords(path, header, n, record_size, trailer, FillPly, cloud);
+}
+
+}  // namespace tubetwin
