@@ -1,0 +1,89 @@
+#include "hw_bridge/base/json.h"
+
+#include <filesystem>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+
+namespace tubetwin {
+namespace {
+
+std::string ErrorOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& e) {
+    CHECK(e.kind() == ErrorKind::kBadData);
+    return e.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("errors in a document name file, path, value and what is needed") {
+  const Json json = Json::parse(R"({"tubes": [{"id": 1, "radius_m": 0.01}, {"id": "two"}],
+                                    "flag": 1, "line": [[0, 1, 2], [0, 1]], "big": 1e999})",
+                                nullptr, false);
+  const JsonView view(json, "pile.json");
+  const JsonView tubes = view.Field("tubes");
+  CHECK(ErrorOf([&] { tubes.Item(1).Field("id").AsInteger(); }) ==
+        "pile.json: tubes[1].id: a whole number is needed, found \"two\"");
+  CHECK(ErrorOf([&] { tubes.Item(0).Field("radius"); }) ==
+        "pile.json: tubes[0]: field 'radius' is missing (nearest present: 'radius_m')");
+  CHECK(ErrorOf([&] { tubes.Item(2); }) == "pile.json: tubes: has no item 2");
+  CHECK(ErrorOf([&] { tubes.Item(0).Field("radius_m").AsNumber(0.02, 0.5); }) ==
+        "pile.json: tubes[0].radius_m: is 0.01, allowed are 0.02 to 0.5");
+  CHECK(ErrorOf([&] { view.Field("flag").AsBool(); }) ==
+        "pile.json: flag: true or false is needed, found 1");
+  CHECK(ErrorOf([&] { view.Field("line").AsPolyline(); }) ==
+        "pile.json: line[1]: three numbers are needed, found 2");
+  CHECK(ErrorOf([&] { view.Field("flag").Size(); }) ==
+        "pile.json: flag: a list is needed, found number");
+  CHECK(ErrorOf([&] { view.Field("flag").Field("x"); }) ==
+        "pile.json: flag: an object is needed, found number");
+}
+
+TEST_CASE("an absent or null optional field is nothing, a present one is read") {
+  const Json json = {{"none", nullptr}, {"some", 2.5}};
+  const JsonView view(json, "f");
+  CHECK_FALSE(view.Optional("none").has_value());
+  CHECK_FALSE(view.Optional("absent").has_value());
+  CHECK(view.Optional("some")->AsNumber() == 2.5);
+}
+
+TEST_CASE("a schema line of another kind or version is refused") {
+  const Json json = {{"schema", "tubetwin/pile/2"}};
+  CHECK(ErrorOf([&] { RequireSchema(JsonView(json, "f"), "pile"); }) ==
+        "f: schema is 'tubetwin/pile/2', 'tubetwin/pile/1' is needed here");
+  const Json good = {{"schema", "tubetwin/pile/1"}};
+  CHECK_NOTHROW(RequireSchema(JsonView(good, "f"), "pile"));
+}
+
+TEST_CASE("broken JSON names the file and the byte") {
+  const TemporaryFolder folder;
+  WriteFileAtomically(folder / "a.json", "{\"a\": 1,, }");
+  CHECK(ErrorOf([&] { ReadJsonFile(folder / "a.json"); }) ==
+        (folder / "a.json") + ": not valid JSON at byte 9 of 11");
+}
+
+TEST_CASE("numbers survive a file bit by bit and keys keep their order") {
+  const TemporaryFolder folder;
+  const Json json = {{"z", 0.1 + 0.2}, {"a", 1e-300}, {"m", {1, 2.5, -0.0}}};
+  WriteJsonFile(json, folder / "sub/a.json");
+  const Json back = ReadJsonFile(folder / "sub/a.json");
+  CHECK(back.dump() == json.dump());
+  CHECK(back["z"].get<double>() == 0.1 + 0.2);
+}
+
+TEST_CASE("a pose survives JSON and a quaternion that is none is refused") {
+  const RigidTransform X_AB = MakeTransform(RotationFromWxyz(0.5, 0.5, -0.5, 0.5), {1, 2, 3});
+  const Json json = ToJson(X_AB);
+  CHECK(TransformFromJson(JsonView(json, "f")).isApprox(X_AB, 1e-15));
+  const Json bad = {{"p_m", {0, 0, 0}}, {"q_wxyz", {1, 1, 0, 0}}};
+  CHECK_THAT(ErrorOf([&] { TransformFromJson(JsonView(bad, "f")); }),
+             Catch::StartsWith("f: q_wxyz: is no unit quaternion"));
+}
+
+}  // namespace tubetwin

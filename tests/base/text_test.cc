@@ -1,0 +1,45 @@
+#include "hw_bridge/base/text.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "hw_bridge/base/error.h"
+#include "tests/support/catch.h"
+
+namespace tubetwin {
+
+TEST_CASE("the nearest name has the fewest letters changed") {
+  const std::vector<std::string> known = {"perpendicular", "plus45", "putback", "none"};
+  CHECK(NearestName("plus54", known) == "plus45");
+  CHECK(NearestName("put_back", known) == "putback");
+  CHECK(NearestName("", known) == "none");
+  CHECK(NearestName("x", {}).empty());
+  CHECK(NearestName("ab", {"aa", "ac"}) == "aa");  // A tie goes to the first.
+}
+
+TEST_CASE("joining puts the separator between, not around") {
+  CHECK(Join({}) == "");
+  CHECK(Join({"a"}) == "a");
+  CHECK(Join({"a", "b", "c"}, "; ") == "a; b; c");
+}
+
+TEST_CASE("a number is written shortest and reads back as the same bits") {
+  CHECK(Number(0.25) == "0.25");
+  CHECK(Number(1e-5) == "1e-05");
+  CHECK(Number(-std::numeric_limits<double>::infinity()) == "-inf");
+  CHECK(Number(std::nan("")) == "nan");
+  for (const double value : {0.1 + 0.2, 1.0 / 3.0, 5e-324, 1.7976931348623157e308, -0.0}) {
+    const double back = std::strtod(Number(value).c_str(), nullptr);
+    CHECK(back == value);
+    CHECK(std::signbit(back) == std::signbit(value));
+  }
+}
+
+TEST_CASE("a failed check of the program throws where a false one stands, and only there") {
+  CHECK_NOTHROW([] { TT_CHECK(1 + 1 == 2); }());
+  CHECK_THROWS_WITH([] { TT_CHECK(1 + 1 == 3); }(),
+                    Catch::Contains("text_test.cc") && Catch::Contains("1 + 1 == 3"));
+}
+
+}  // namespace tubetwin
