@@ -1,6 +1,7 @@
 #include "hw_bridge/base/json.h"
 
 #include <cmath>
+#include <limits>
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
@@ -15,6 +16,8 @@ Json ReadJsonFile(const std::string& path) {
   } catch (const nlohmann::json::parse_error& e) {
     throw Error(ErrorKind::kBadData, path + ": not valid JSON at byte " + std::to_string(e.byte) +
                                          " of " + std::to_string(text.size()));
+  } catch (const nlohmann::json::out_of_range&) {
+    throw Error(ErrorKind::kBadData, path + ": holds a number too large for any field");
   }
 }
 
@@ -64,6 +67,10 @@ bool JsonView::AsBool() const {
 std::int64_t JsonView::AsInteger() const {
   if (!json_->is_number_integer()) {
     Fail("a whole number is needed, found " + json_->dump().substr(0, 40));
+  }
+  if (json_->is_number_unsigned() &&
+      json_->get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()}) {
+    Fail("a whole number below 2^63 is needed, found " + json_->dump());
   }
   return json_->get<std::int64_t>();
 }

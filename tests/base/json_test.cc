@@ -24,8 +24,7 @@ std::string ErrorOf(const std::function<void()>& action) {
 
 TEST_CASE("errors in a document name file, path, value and what is needed") {
   const Json json = Json::parse(R"({"tubes": [{"id": 1, "radius_m": 0.01}, {"id": "two"}],
-                                    "flag": 1, "line": [[0, 1, 2], [0, 1]], "big": 1e999})",
-                                nullptr, false);
+                                    "flag": 1, "line": [[0, 1, 2], [0, 1]], "big": 18446744073709551615})");
   const JsonView view(json, "pile.json");
   const JsonView tubes = view.Field("tubes");
   CHECK(ErrorOf([&] { tubes.Item(1).Field("id").AsInteger(); }) ==
@@ -37,6 +36,8 @@ TEST_CASE("errors in a document name file, path, value and what is needed") {
         "pile.json: tubes[0].radius_m: is 0.01, allowed are 0.02 to 0.5");
   CHECK(ErrorOf([&] { view.Field("flag").AsBool(); }) ==
         "pile.json: flag: true or false is needed, found 1");
+  CHECK(ErrorOf([&] { view.Field("big").AsInteger(); }) ==
+        "pile.json: big: a whole number below 2^63 is needed, found 18446744073709551615");
   CHECK(ErrorOf([&] { view.Field("line").AsPolyline(); }) ==
         "pile.json: line[1]: three numbers are needed, found 2");
   CHECK(ErrorOf([&] { view.Field("flag").Size(); }) ==
@@ -66,6 +67,9 @@ TEST_CASE("broken JSON names the file and the byte") {
   WriteFileAtomically(folder / "a.json", "{\"a\": 1,, }");
   CHECK(ErrorOf([&] { ReadJsonFile(folder / "a.json"); }) ==
         (folder / "a.json") + ": not valid JSON at byte 9 of 11");
+  WriteFileAtomically(folder / "a.json", "[1e999]");
+  CHECK(ErrorOf([&] { ReadJsonFile(folder / "a.json"); }) ==
+        (folder / "a.json") + ": holds a number too large for any field");
 }
 
 TEST_CASE("numbers survive a file bit by bit and keys keep their order") {
