@@ -37,10 +37,17 @@ struct ScanSettings {
   bool labels = false;
 };
 
+/// Pose of the projector (P, z along its optical axis) in the camera frame S. Camera and projector
+/// stand symmetrically in the housing, `baseline_m` apart, each turned by `toe_in_deg` towards the
+/// other; the projector is on S's +x side. With the arm's scan poses that is the side away from the
+/// robot's base, so the forearm never stands in the light.
+RigidTransform ProjectorPose(const ScannerSpec& spec);
+
 /// One scan by ray casting (Embree): camera rays, projector shadow, incidence drop-out, flying
-/// pixels at edges, soft range, noise (design.md 5). `X_BS` is the true pose; the result's X_NS is
-/// left to the caller. Random numbers depend on stream and pixel only: the same cloud for any
-/// thread count.
+/// pixels at edges, soft range, noise (design.md 5; details at the top of scan.cc). `X_BS` is the
+/// true pose; the result's X_NS is left to the caller. Intensity is albedo times the cosine of the
+/// projector's incidence. Random numbers depend on stream and pixel only: the same cloud for any
+/// thread count. Throws Error(kInternal) when Embree fails.
 OrganizedCloud CastScan(const ScanGeometry& geometry, const RigidTransform& X_BS,
                         const ScanSettings& settings, RandomStream stream, Parallelism parallelism);
 
