@@ -12,7 +12,9 @@
 
 namespace tubetwin {
 
-/// One tube of a pile. Frame N. A hose's centerline has one node per link end.
+/// One tube of a pile. Frame N. The material is the union of capsules from node to node (round
+/// ends reach one radius beyond the first and last node), and the tube's length is the
+/// centerline's, node to node, as in the public set. A hose's centerline has one node per link end.
 struct PileTube {
   int id = 0;
   Polyline centerline_N;

@@ -56,6 +56,8 @@ void SetName(mjsElement* element, const std::string& name) {
   }
 }
 
+void SetString(mjString* field, const std::string& text) { mjs_setString(field, text.c_str()); }
+
 void SetPose(const RigidTransform& X_PB, double pos[3], double quat[4]) {
   const std::array<double, 4> q = QuaternionWxyz(X_PB.linear());
   for (int k = 0; k < 3; ++k) pos[k] = X_PB.translation()[k];

@@ -50,6 +50,10 @@ int IdOf(const mjModel& model, mjtObj type, const std::string& name);
 /// Sets a name. Throws Error(kInternal) when it is taken.
 void SetName(mjsElement* element, const std::string& name);
 
+/// Sets a text field of a spec element. Never assign to one: the library's std::string is not ours
+/// (it carries its own C++ run time), so `*weld->name1 = ...` corrupts memory.
+void SetString(mjString* field, const std::string& text);
+
 /// Pose into pos[3], quat[4] (w x y z).
 void SetPose(const RigidTransform& X_PB, double pos[3], double quat[4]);
 

@@ -1,0 +1,318 @@
+#include "scenes/tube_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include "hw_bridge/base/error.h"
+#include "scenes/engine/mj_handles.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kDampingTime_s = 0.02;  // Joint damping over stiffness: loss factor of EPDM.
+constexpr double kArmature_kgm2 = 1e-5;  // Steadies the light links; 3 % of a link's own inertia.
+constexpr double kRollingFriction_m = 1e-4;
+// Share of m r^2 about the own axis: thin-walled tube 1, hose with half-radius bore 5/8.
+constexpr double kRigidAxial = 1.0, kHoseAxial = 0.625;
+
+// Inertia of a straight piece of tube about its middle, axes of the piece along `direction`.
+Matrix3 PieceInertia(double mass_kg, double length_m, double radius_m, double axial_factor,
+                     const Vector3& direction) {
+  const double axial = axial_factor * mass_kg * radius_m * radius_m;
+  const double across = 0.5 * axial + mass_kg * length_m * length_m / 12.0;
+  const Matrix3 along = direction * direction.transpose();
+  return axial * along + across * (Matrix3::Identity() - along);
+}
+
+std::vector<Vector3> Tangents(const Polyline& line) {
+  std::vector<Vector3> tangents;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    tangents.push_back((line[i + 1] - line[i]).normalized());
+  }
+  return tangents;
+}
+
+// Twist-free frames along the links: z along the link, each turned from the one before by the
+// smallest rotation.
+std::vector<Matrix3> TwistFreeFrames(const std::vector<Vector3>& tangents) {
+  std::vector<Matrix3> frames(tangents.size());
+  frames[0].col(2) = tangents[0];
+  frames[0].col(0) = tangents[0].unitOrthogonal();
+  frames[0].col(1) = tangents[0].cross(frames[0].col(0));
+  for (std::size_t i = 1; i < tangents.size(); ++i) {
+    const Matrix3 turn =
+        Eigen::Quaterniond::FromTwoVectors(tangents[i - 1], tangents[i]).toRotationMatrix();
+    frames[i] = turn * frames[i - 1];
+    frames[i].col(2) = tangents[i];
+  }
+  return frames;
+}
+
+// Bend between link i and i + 1 as a rotation vector in the frame's x and y.
+std::complex<double> Bend(const std::vector<Matrix3>& frames, std::size_t i) {
+  const Vector3 axis = frames[i].col(2).cross(frames[i + 1].col(2));
+  const double sine = axis.norm();
+  if (sine < 1e-12) return 0.0;
+  const double angle = std::atan2(sine, frames[i].col(2).dot(frames[i + 1].col(2)));
+  const Vector3 bend = axis * (angle / sine);
+  return {bend.dot(frames[i].col(0)), bend.dot(frames[i].col(1))};
+}
+
+// Frames of the rest shape, turned about the hose's own axis so that the bending from rest to
+// `current` is smallest.
+std::vector<Matrix3> RestFrames(const std::vector<Matrix3>& current, const Polyline& rest) {
+  std::vector<Matrix3> frames = TwistFreeFrames(Tangents(rest));
+  std::complex<double> sum = 0.0;
+  for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
+    sum += Bend(current, i) * std::conj(Bend(frames, i));
+  }
+  const double turn_rad = std::abs(sum) > 1e-9 ? -std::arg(sum) : 0.0;
+  for (Matrix3& frame : frames) frame = frame * RotZ(turn_rad);
+  return frames;
+}
+
+// Angles about x, then y of the child that bring its z from `X_PC`'s to `tangent_P`.
+std::array<double, 2> HingeAngles(const Matrix3& R_PC, const Vector3& tangent_P) {
+  const Vector3 v = R_PC.transpose() * tangent_P;
+  return {std::atan2(-v.y(), v.z()), std::asin(std::clamp(v.x(), -1.0, 1.0))};
+}
+
+void SetMass(mjsBody* body, double mass_kg, const Vector3& centre, const Vector3& inertia) {
+  body->explicitinertial = true;
+  body->mass = mass_kg;
+  for (int k = 0; k < 3; ++k) {
+    body->ipos[k] = centre[k];
+    body->inertia[k] = inertia[k];
+  }
+}
+
+void AddHinge(mjsBody* body, const std::string& name, const Vector3& axis, double stiffness,
+              double rest_rad) {
+  mjsJoint* joint = mjs_addJoint(body, nullptr);
+  SetName(joint->element, name);
+  joint->type = mjJNT_HINGE;
+  for (int k = 0; k < 3; ++k) joint->axis[k] = axis[k];
+  joint->stiffness[0] = stiffness;
+  joint->damping[0] = kDampingTime_s * stiffness;
+  joint->armature = kArmature_kgm2;
+  joint->springref = rest_rad;
+}
+
+}  // namespace
+
+TubeBodyOptions MakeTubeBodyOptions(const Part& part, const RoundPhysics& physics,
+                                    const RigidTransform& X_WN) {
+  TubeBodyOptions options;
+  options.X_WN = X_WN;
+  options.hose = part.is_hose();
+  options.mass_scale = physics.mass_scale;
+  options.friction = physics.tube_friction;
+  options.bending_stiffness_Nm2 = physics.bending_stiffness_Nm2;
+  if (part.colour_rgb.size() == 3) {
+    std::copy(part.colour_rgb.begin(), part.colour_rgb.end(), options.colour_rgb.begin());
+  }
+  return options;
+}
+
+TubeBody::TubeBody(mjSpec& spec, const std::string& name, const PileTube& tube,
+                   const TubeBodyOptions& options)
+    : name_(name), tube_(tube), options_(options) {
+  TT_CHECK(tube.centerline_N.size() >= (options.hose ? 3u : 2u));
+  if (options.hose) {
+    BuildHose(spec);
+  } else {
+    BuildRigid(spec);
+  }
+}
+
+void TubeBody::AddCapsule(mjsBody* body, int index, const Vector3& from, const Vector3& to) const {
+  mjsGeom* geom = mjs_addGeom(body, nullptr);
+  SetName(geom->element, name_ + "_g" + std::to_string(index));
+  geom->type = mjGEOM_CAPSULE;
+  geom->size[0] = tube_.radius_m;
+  for (int k = 0; k < 3; ++k) {
+    geom->fromto[k] = from[k];
+    geom->fromto[3 + k] = to[k];
+    geom->rgba[k] = static_cast<float>(options_.colour_rgb[k]);
+  }
+  geom->rgba[3] = 1.0f;
+  geom->mass = 0.0;  // The body's inertia is given; capsules overlap at the nodes.
+  geom->condim = 4;
+  geom->friction[0] = options_.friction;
+  geom->friction[1] = options_.torsion_m;
+  geom->friction[2] = kRollingFriction_m;
+  geom->solref[0] = options_.contact_time_s;
+  geom->solref[1] = 1.0;
+  geom->solimp[0] = 0.95;
+  geom->solimp[1] = 0.99;
+  geom->solimp[2] = 0.001;
+}
+
+void TubeBody::BuildRigid(mjSpec& spec) {
+  const Polyline line = Transformed(options_.X_WN, tube_.centerline_N);
+  const double mass_kg = tube_.mass_kg * options_.mass_scale;
+  const double total_m = Length(line);
+  const Vector3 centre = CurveCentre(line);
+  Matrix3 inertia = Matrix3::Zero();
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    const Vector3 piece = line[i + 1] - line[i];
+    const double length_m = piece.norm();
+    const double piece_kg = mass_kg * length_m / total_m;
+    const Vector3 d = 0.5 * (line[i] + line[i + 1]) - centre;
+    inertia += PieceInertia(piece_kg, length_m, tube_.radius_m, kRigidAxial, piece / length_m);
+    inertia += piece_kg * (d.squaredNorm() * Matrix3::Identity() - d * d.transpose());
+  }
+  // Principal axes as the body's frame: the engine has a shorter path for such bodies.
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(inertia);
+  Matrix3 axes = solver.eigenvectors();
+  if (axes.determinant() < 0) axes.col(2) = -axes.col(2);
+  const RigidTransform X_WBody = MakeTransform(axes, centre);
+
+  mjsBody* body = mjs_addBody(mjs_findBody(&spec, "world"), nullptr);
+  SetName(body->element, name_);
+  body_names_ = {name_};
+  SetPose(X_WBody, body->pos, body->quat);
+  SetName(mjs_addFreeJoint(body)->element, name_ + "_free");
+  SetMass(body, mass_kg, Vector3::Zero(), solver.eigenvalues());
+  for (const Vector3& node : Transformed(X_WBody.inverse(), line)) nodes_.push_back({0, node});
+  for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
+    AddCapsule(body, static_cast<int>(i), nodes_[i].p_Body, nodes_[i + 1].p_Body);
+  }
+}
+
+void TubeBody::BuildHose(mjSpec& spec) {
+  const Polyline line = Transformed(options_.X_WN, tube_.centerline_N);
+  const int links = static_cast<int>(line.size()) - 1, root = links / 2;
+  const double density = tube_.mass_kg * options_.mass_scale / Length(line);
+  const std::vector<Matrix3> frames = TwistFreeFrames(Tangents(line));
+  const Polyline& rest = tube_.rest_centerline_N ? *tube_.rest_centerline_N : line;
+  TT_CHECK(rest.size() == line.size());
+  const std::vector<Matrix3> rest_frames = RestFrames(frames, rest);
+  std::vector<double> lengths(links);
+  for (int i = 0; i < links; ++i) {
+    lengths[i] = (line[i + 1] - line[i]).norm();
+    body_names_.push_back(name_ + "_" + std::to_string(i));
+  }
+  nodes_.resize(line.size());
+  std::vector<mjsBody*> bodies(links);
+
+  // Adds link i below its neighbour towards the root. The link's frame sits at the node that both
+  // share (the root's at its first node), z forward along the tube.
+  const auto add = [&](int i, int parent) {
+    const bool forward = i >= root;
+    mjsBody* body =
+        mjs_addBody(parent < 0 ? mjs_findBody(&spec, "world") : bodies[parent], nullptr);
+    bodies[i] = body;
+    SetName(body->element, body_names_[i]);
+    if (parent < 0) {
+      SetPose(MakeTransform(frames[i], line[i]), body->pos, body->quat);
+      SetName(mjs_addFreeJoint(body)->element, name_ + "_free");
+    } else {
+      const Matrix3 R_PC = frames[parent].transpose() * frames[i];
+      const bool at_parents_end = forward;
+      const bool parent_is_reversed = parent < root;
+      const double z =
+          at_parents_end ? lengths[parent] : (parent_is_reversed ? -lengths[parent] : 0.0);
+      SetPose(MakeTransform(R_PC, Vector3(0, 0, z)), body->pos, body->quat);
+      const double stiffness =
+          options_.bending_stiffness_Nm2 / (0.5 * (lengths[i] + lengths[parent]));
+      const std::array<double, 2> angles =
+          HingeAngles(R_PC, rest_frames[parent].transpose() * rest_frames[i].col(2));
+      AddHinge(body, body_names_[i] + "_x", Vector3::UnitX(), stiffness, angles[0]);
+      AddHinge(body, body_names_[i] + "_y", Vector3::UnitY(), stiffness, angles[1]);
+    }
+    const Vector3 far(0, 0, forward ? lengths[i] : -lengths[i]);
+    const double mass_kg = density * lengths[i];
+    SetMass(
+        body, mass_kg, 0.5 * far,
+        PieceInertia(mass_kg, lengths[i], tube_.radius_m, kHoseAxial, Vector3::UnitZ()).diagonal());
+    AddCapsule(body, i, forward ? Vector3(0, 0, 0) : far, forward ? far : Vector3(0, 0, 0));
+    if (parent < 0) nodes_[i] = {i, Vector3::Zero()};
+    nodes_[forward ? i + 1 : i] = {i, far};
+  };
+  add(root, -1);
+  for (int i = root + 1; i < links; ++i) add(i, i - 1);
+  for (int i = root - 1; i >= 0; --i) add(i, i + 1);
+  // Neighbours of neighbours would touch at a normal bend when links are short.
+  for (int i = 0; i + 2 < links; ++i) {
+    if (lengths[i + 1] > 3.0 * tube_.radius_m) continue;
+    mjsExclude* exclude = mjs_addExclude(&spec);
+    SetString(exclude->bodyname1, body_names_[i]);
+    SetString(exclude->bodyname2, body_names_[i + 2]);
+  }
+}
+
+void TubeBody::Bind(const mjModel& model) {
+  bodies_.clear();
+  geoms_.clear();
+  for (const std::string& name : body_names_) bodies_.push_back(IdOf(model, mjOBJ_BODY, name));
+  for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
+    geoms_.push_back(IdOf(model, mjOBJ_GEOM, name_ + "_g" + std::to_string(i)));
+  }
+}
+
+Polyline TubeBody::Centerline_W(const mjData& data) const {
+  TT_CHECK(!bodies_.empty());
+  Polyline line;
+  for (const Attachment& node : nodes_) {
+    line.push_back(BodyPose(data, bodies_[node.link]) * node.p_Body);
+  }
+  return line;
+}
+
+Polyline TubeBody::Centerline_N(const mjData& data) const {
+  return Transformed(options_.X_WN.inverse(), Centerline_W(data));
+}
+
+PileTube TubeBody::Current(const mjData& data) const {
+  PileTube tube = tube_;
+  tube.centerline_N = Centerline_N(data);
+  return tube;
+}
+
+Vector3 TubeBody::CentreOfMass_W(const mjModel& model, const mjData& data) const {
+  TT_CHECK(!bodies_.empty());
+  Vector3 sum = Vector3::Zero();
+  double mass_kg = 0.0;
+  for (const int body : bodies_) {
+    sum += model.body_mass[body] * Vector3(data.xipos + 3 * body);
+    mass_kg += model.body_mass[body];
+  }
+  return sum / mass_kg;
+}
+
+double TubeBody::MaxSpeed(const mjModel& model, const mjData& data) const {
+  TT_CHECK(!bodies_.empty());
+  double fastest = 0.0;
+  for (const Attachment& node : nodes_) {
+    mjtNum velocity[6];  // Rotation, then translation of the body's frame origin, world axes.
+    mj_objectVelocity(&model, &data, mjOBJ_XBODY, bodies_[node.link], velocity, 0);
+    const Vector3 arm = BodyPose(data, bodies_[node.link]).linear() * node.p_Body;
+    const Vector3 speed = Vector3(velocity + 3) + Vector3(velocity).cross(arm);
+    // A number that is not one must not pass for rest.
+    if (!(speed.norm() <= fastest)) fastest = speed.norm();
+    if (!std::isfinite(fastest)) return std::numeric_limits<double>::infinity();
+  }
+  return fastest;
+}
+
+TubeBody::Attachment TubeBody::AttachmentAt(double arc_length_m) const {
+  const Polyline& line = tube_.centerline_N;
+  const std::vector<double> at = ArcLengths(line);
+  const double s = std::clamp(arc_length_m, 0.0, at.back());
+  std::size_t i = 0;
+  while (i + 2 < at.size() && at[i + 1] < s) ++i;
+  const double share = (s - at[i]) / (at[i + 1] - at[i]);
+  if (!options_.hose) {
+    return {0, nodes_[i].p_Body + share * (nodes_[i + 1].p_Body - nodes_[i].p_Body)};
+  }
+  const int link = static_cast<int>(i), root = (static_cast<int>(line.size()) - 1) / 2;
+  const double length_m = at[i + 1] - at[i];
+  // Frames sit at the node towards the middle, z forward.
+  const double z = link >= root ? share * length_m : -(1.0 - share) * length_m;
+  return {link, Vector3(0, 0, z)};
+}
+
+}  // namespace tubetwin
