@@ -18,20 +18,26 @@ struct CapsuleChain {
   double radius_m = 0.0;
 };
 
-/// Distances of arm, tool, scanner housing and palm against bin, tray, column, cell plate and each
-/// other (FCL, boxes and capsules only). Fingers against the bin are checked too, with the pads'
-/// opening. Immutable after construction; const calls are thread safe.
+/// Distances of arm, tool, scanner housing, gripper and fingers against bin, tray, base, cell plate
+/// and each other (FCL, primitive shapes). Pairs that the joints hold apart or together
+/// (neighbours) are left out. The fingers stand where `opening_m` puts them. Immutable after
+/// construction; const calls are thread safe.
 class ClearanceChecker {
  public:
   ClearanceChecker(const ArmModel& arm, const CellLayout& layout, const Bin& bin);
   ~ClearanceChecker();
 
-  struct Result {
+  /// The nearest pair of a kind.
+  struct Nearest {
     double clearance_m = 0.0;  ///< Smallest signed distance; negative or zero means contact.
-    std::string moving;        ///< Names of the nearest pair, for messages.
+    std::string moving;        ///< Names of the pair, for messages; empty when nothing is near.
     std::string obstacle;
   };
-  /// Smallest clearance at q, at most `enough_m` (search stops there). `opening_m`: gripper.
+  struct Result : Nearest {  ///< Over all pairs.
+    Nearest fingers;         ///< The fingers against the bin's floor and walls only.
+    Nearest others;          ///< Every pair but those.
+  };
+  /// Smallest clearances at q, at most `enough_m` (search stops there). `opening_m`: gripper.
   Result Check(const JointVector& q, double opening_m, double enough_m = 0.05) const;
 
   /// Boxes and capsules of the moving bodies, for the twin's collision and looks: one list.
