@@ -6,9 +6,7 @@
 
 #include "hw_bridge/base/parallel.h"
 #include "hw_bridge/base/polyline.h"
-#include "hw_bridge/base/wrench.h"
 #include "models/bin.h"
-#include "perception/tube_scene.h"
 
 namespace tubetwin {
 
@@ -19,7 +17,7 @@ struct Recording {
   /// Perceived tubes (frame N) and the chosen one, drawn over the picture until the next overlay.
   struct Overlay {
     std::vector<Polyline> lines_N;
-    std::vector<TubeClass> classes;
+    std::vector<int> classes;  ///< Of each line: 0 free, 1 weak, 2 strong (TubeClass's order).
     int target = -1;  ///< Index in lines_N.
   };
   struct Frame {
