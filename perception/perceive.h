@@ -14,12 +14,15 @@ namespace tubetwin {
 /// Config table [perception]. Lengths in metres. Defaults are for the scanner of the cell.
 struct PerceptionConfig {
   std::string profile = "best";
-  void Visit(ConfigVisitor& v);  // more keys in perceive.cc's own struct are welcome here
+  double block_m = 0.0007;  ///< Side of the pixel blocks that are averaged first.
+  void Visit(ConfigVisitor& v);
 };
 
 /// Tubes and crossings from clouds alone: axis-space method and joining by matching with vetoes.
 /// `views`: at least one, organised or not, each with the pose that is believed. Radius and length
-/// come from `part`. Never reads labels. Results do not depend on the thread count.
+/// come from `part`. Never reads labels. Results do not depend on the thread count. A cloud without
+/// any valid point is fine: nothing was seen. Throws Error(kBadData) when there is no view, a pose
+/// is not finite or a cloud's sizes disagree.
 TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, const Bin& bin,
                    const PerceptionConfig& config, Parallelism parallelism);
 

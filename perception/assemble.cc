@@ -1,0 +1,161 @@
+#include "perception/assemble.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tubetwin {
+namespace {
+
+/// Least seen part of a tube that is reported, as a share of its length and in radii.
+constexpr double kLeastSeen = 0.15;
+constexpr double kLeastSeenRadii = 4.0;
+/// Shorter lacks are within the error of two ends.
+constexpr double kLack_m = 0.006;
+/// An end with this much of a cap seen is the tube's own end.
+constexpr double kClosed = 0.5;
+/// Other axes stay this far off a completed end, in radii.
+constexpr double kClearance = 1.8;
+
+void Append(PerceivedTube& tube, const Vector3& p_N, bool visible) {
+  tube.centerline_N.push_back(p_N);
+  tube.node_visible.push_back(visible ? 1 : 0);
+}
+
+/// Fragments and bridges one after another; the nodes of the fragments are the visible ones.
+PerceivedTube Concatenate(const Chain& chain, const std::vector<Fragment>& fragments,
+                          const std::vector<Bridge>& bridges) {
+  PerceivedTube tube;
+  for (std::size_t i = 0; i < chain.ends.size(); ++i) {
+    const int entry = chain.ends[i];
+    if (i > 0) {
+      const Bridge& bridge = bridges[static_cast<std::size_t>(chain.bridges[i - 1])];
+      Polyline line = bridge.line_N;
+      if (bridge.end_b != entry) std::reverse(line.begin(), line.end());
+      for (std::size_t k = 1; k + 1 < line.size(); ++k) Append(tube, line[k], false);
+    }
+    Polyline line = fragments[static_cast<std::size_t>(entry / 2)].line_N;
+    if (entry % 2 == 1) std::reverse(line.begin(), line.end());
+    for (const Vector3& p : line) Append(tube, p, true);
+  }
+  return tube;
+}
+
+double SeenLength(const PerceivedTube& tube) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < tube.centerline_N.size(); ++i) {
+    if (tube.node_visible[i - 1] != 0 && tube.node_visible[i] != 0) {
+      sum += (tube.centerline_N[i] - tube.centerline_N[i - 1]).norm();
+    }
+  }
+  return sum;
+}
+
+/// Prolongs a tube's ends into what no view saw.
+class Completion {
+ public:
+  Completion(const std::vector<Fragment>& fragments, const HiddenSpace& space)
+      : fragments_(fragments), space_(space) {}
+
+  /// Adds up to `lack_m` at the ends that are open, in turns; a view that sees past a place,
+  /// another tube, floor or wall stops it.
+  void Complete(PerceivedTube& tube, const Chain& chain, double lack_m) const {
+    const int end[2] = {chain.ends.front(), chain.ends.back() ^ 1};
+    bool open[2];
+    Vector3 p[2], t[2];
+    for (int k = 0; k < 2; ++k) {
+      const FragmentEnd& e = fragments_[static_cast<std::size_t>(end[k] / 2)].ends[end[k] % 2];
+      open[k] = e.cap < kClosed;
+      p[k] = e.p_N;
+      t[k] = e.outward_N;
+    }
+    Polyline added[2];
+    while (lack_m > 1e-6 && (open[0] || open[1])) {
+      for (int k = 0; k < 2 && lack_m > 1e-6; ++k) {
+        if (!open[k]) continue;
+        const double step = std::min(kNodeStep_m, lack_m);
+        const Vector3 next = p[k] + step * t[k];
+        open[k] = MayHide(next, chain);
+        if (!open[k]) continue;
+        p[k] = next;
+        added[k].push_back(next);
+        lack_m -= step;
+      }
+    }
+    std::reverse(added[0].begin(), added[0].end());
+    tube.centerline_N.insert(tube.centerline_N.begin(), added[0].begin(), added[0].end());
+    tube.node_visible.insert(tube.node_visible.begin(), added[0].size(), 0);
+    for (const Vector3& q : added[1]) Append(tube, q, false);
+  }
+
+ private:
+  bool MayHide(const Vector3& p_N, const Chain& chain) const {
+    if (!space_.FitsBin(p_N) || space_.Look(p_N) != Sight::kHidden) return false;
+    for (std::size_t f = 0; f < fragments_.size(); ++f) {
+      const bool own = std::any_of(chain.ends.begin(), chain.ends.end(),
+                                   [f](int e) { return static_cast<std::size_t>(e / 2) == f; });
+      if (own) continue;
+      if (Closest(fragments_[f].line_N, p_N).distance_m < kClearance * space_.radius_m()) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  const std::vector<Fragment>& fragments_;
+  const HiddenSpace& space_;
+};
+
+/// 0..1 from how well the pieces fit, how dear their joints were, how much was seen, and how far
+/// the length is from the part's.
+double Confidence(const PerceivedTube& tube, const Chain& chain,
+                  const std::vector<Fragment>& fragments, const std::vector<Bridge>& bridges,
+                  double tube_length_m) {
+  double fit = 1.0, joints = 0.0;
+  for (const int e : chain.ends)
+    fit = std::min(fit, fragments[static_cast<std::size_t>(e / 2)].fit);
+  for (const int b : chain.bridges) joints += bridges[static_cast<std::size_t>(b)].cost;
+  const double lack = std::abs(tube.length_m - tube_length_m) / tube_length_m;
+  const double seen = std::min(1.0, tube.visible_fraction / 0.7);
+  return std::clamp(std::min(1.0, fit / 0.8) * std::exp(-joints / 6.0) * std::exp(-3.0 * lack) *
+                        (0.4 + 0.6 * seen),
+                    0.0, 1.0);
+}
+
+bool TouchesBin(const Polyline& line, const Bin& bin) {
+  return std::any_of(line.begin(), line.end(), [&bin](const Vector3& p) {
+    return std::abs(p.x()) < bin.half_x_m() && std::abs(p.y()) < bin.half_y_m();
+  });
+}
+
+}  // namespace
+
+std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
+                                         const std::vector<Fragment>& fragments,
+                                         const std::vector<Bridge>& bridges,
+                                         const HiddenSpace& space, const Bin& bin,
+                                         double tube_length_m) {
+  std::vector<const Chain*> order;
+  for (const Chain& chain : chains) order.push_back(&chain);
+  std::sort(order.begin(), order.end(), [](const Chain* a, const Chain* b) {
+    return *std::min_element(a->ends.begin(), a->ends.end()) <
+           *std::min_element(b->ends.begin(), b->ends.end());
+  });
+  const double least_m = std::max(kLeastSeen * tube_length_m, kLeastSeenRadii * space.radius_m());
+  std::vector<PerceivedTube> out;
+  for (const Chain* chain : order) {
+    PerceivedTube tube = Concatenate(*chain, fragments, bridges);
+    const double seen_m = SeenLength(tube);
+    if (seen_m < least_m || !TouchesBin(tube.centerline_N, bin)) continue;
+    const double lack_m = tube_length_m - chain->length_m;
+    if (lack_m > kLack_m) Completion(fragments, space).Complete(tube, *chain, lack_m);
+    tube.id = static_cast<int>(out.size());
+    tube.radius_m = space.radius_m();
+    tube.length_m = Length(tube.centerline_N);
+    tube.visible_fraction = std::clamp(seen_m / tube.length_m, 0.0, 1.0);
+    tube.confidence = Confidence(tube, *chain, fragments, bridges, tube_length_m);
+    out.push_back(std::move(tube));
+  }
+  return out;
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,138 @@
+#include "perception/bridges.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tubetwin {
+namespace {
+
+/// How much deeper than a tube's surface a view must see, in radii: a bridge is a guess and may be
+/// that far off.
+constexpr double kSlack = 0.4;
+/// Contacts of real piles give a little.
+constexpr double kContact_m = 0.002;
+/// Bending energy (1/m) that costs 1: an arc of radius 50 mm over 100 mm has 40.
+constexpr double kBendingUnit = 40.0;
+/// Gap that costs 1.
+constexpr double kGapUnit_m = 0.15;
+/// Cost of a way that no view confirms to be hidden, and of leaving through a closed end.
+constexpr double kUnconfirmed = 0.7;
+constexpr double kClosedEnd = 3.0;
+/// Costs beyond this are no explanation.
+constexpr double kDearest = 6.0;
+/// Shorter gaps say nothing about direction.
+constexpr double kShortestChord_m = 0.02;
+
+}  // namespace
+
+HiddenSpace::HiddenSpace(const std::vector<ViewImage>& views, const Bin& bin, double radius_m)
+    : views_(views), bin_(bin), radius_m_(radius_m) {}
+
+Sight HiddenSpace::Look(const Vector3& p_N) const {
+  Sight out = Sight::kUnknown;
+  for (const ViewImage& view : views_) {
+    const Sight sight = LookAt(view, p_N, radius_m_, kSlack * radius_m_);
+    if (sight == Sight::kSeenThrough) return sight;
+    if (sight == Sight::kSurface || out == Sight::kUnknown) out = sight;
+  }
+  return out;
+}
+
+bool HiddenSpace::FitsBin(const Vector3& p_N) const {
+  const double r = radius_m_;
+  if (p_N.z() < r - 0.003) return false;
+  if (p_N.z() > bin_.wall_m()) return true;
+  const double out =
+      std::max(std::abs(p_N.x()) - bin_.half_x_m(), std::abs(p_N.y()) - bin_.half_y_m());
+  return out < 0.003 - r || out > Bin::kWallThickness_m + r - 0.003;
+}
+
+double DistanceToOthers(const std::vector<Fragment>& fragments, const Vector3& p_N, int except_a,
+                        int except_b) {
+  double nearest = 1e9;
+  for (std::size_t i = 0; i < fragments.size(); ++i) {
+    if (static_cast<int>(i) == except_a || static_cast<int>(i) == except_b) continue;
+    nearest = std::min(nearest, Closest(fragments[i].line_N, p_N).distance_m);
+  }
+  return nearest;
+}
+
+namespace {
+
+/// Cubic between two ends that leaves and arrives along their tangents.
+Polyline Cubic(const FragmentEnd& a, const FragmentEnd& b) {
+  const double chord = (b.p_N - a.p_N).norm();
+  const Vector3 m0 = chord * a.outward_N, m1 = -chord * b.outward_N;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(1.2 * chord / kNodeStep_m)));
+  Polyline line;
+  for (int i = 0; i <= pieces; ++i) {
+    const double t = static_cast<double>(i) / pieces, t2 = t * t, t3 = t2 * t;
+    line.push_back((2 * t3 - 3 * t2 + 1) * a.p_N + (t3 - 2 * t2 + t) * m0 +
+                   (3 * t2 - 2 * t3) * b.p_N + (t3 - t2) * m1);
+  }
+  return line;
+}
+
+/// Energy of a thin beam between two tangents, closed form, over the chord.
+double BendingEnergy(const FragmentEnd& a, const FragmentEnd& b) {
+  const Vector3 chord = b.p_N - a.p_N;
+  const double length = std::max(chord.norm(), kShortestChord_m);
+  const Vector3 c = chord.normalized();
+  auto angle = [&c](const Vector3& t) -> Vector3 {
+    const Vector3 across = t - t.dot(c) * c;
+    const double sine = across.norm();
+    return sine < 1e-9 ? Vector3::Zero() : Vector3(std::atan2(sine, t.dot(c)) / sine * across);
+  };
+  const Vector3 alpha = angle(a.outward_N), beta = angle(-b.outward_N);
+  return 4.0 / length * (alpha.squaredNorm() + alpha.dot(beta) + beta.squaredNorm());
+}
+
+/// Share of a bridge that no view confirms; -1 when something forbids it.
+double Unconfirmed(const Bridge& bridge, const std::vector<Fragment>& fragments,
+                   const HiddenSpace& space) {
+  const double r = space.radius_m();
+  int unknown = 0, denied_in_a_row = 0;
+  // Next to its ends a bridge is where the fragments' own edges are seen.
+  for (std::size_t i = 1; i + 1 < bridge.line_N.size(); ++i) {
+    const Vector3& p = bridge.line_N[i];
+    if (!space.FitsBin(p)) return -1.0;
+    if (DistanceToOthers(fragments, p, bridge.end_a / 2, bridge.end_b / 2) < 2 * r - kContact_m) {
+      return -1.0;
+    }
+    const Sight sight = space.Look(p);
+    denied_in_a_row = sight == Sight::kSeenThrough ? denied_in_a_row + 1 : 0;
+    if (denied_in_a_row >= 2) return -1.0;
+    unknown += sight == Sight::kUnknown;
+  }
+  return static_cast<double>(unknown) / static_cast<double>(bridge.line_N.size());
+}
+
+}  // namespace
+
+std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const HiddenSpace& space,
+                                double longest_m) {
+  std::vector<Bridge> out;
+  const int ends = 2 * static_cast<int>(fragments.size());
+  for (int i = 0; i < ends; ++i) {
+    for (int k = i + 1; k < ends; ++k) {
+      if (i / 2 == k / 2) continue;
+      const FragmentEnd& a = fragments[static_cast<std::size_t>(i / 2)].ends[i % 2];
+      const FragmentEnd& b = fragments[static_cast<std::size_t>(k / 2)].ends[k % 2];
+      const double chord = (b.p_N - a.p_N).norm();
+      if (chord > longest_m) continue;
+      Bridge bridge{i, k, {}, chord, 0.0};
+      bridge.cost =
+          BendingEnergy(a, b) / kBendingUnit + chord / kGapUnit_m + kClosedEnd * (a.cap + b.cap);
+      if (bridge.cost > kDearest) continue;
+      bridge.line_N = Cubic(a, b);
+      bridge.length_m = Length(bridge.line_N);
+      const double unconfirmed = Unconfirmed(bridge, fragments, space);
+      if (unconfirmed < 0.0) continue;
+      bridge.cost += kUnconfirmed * unconfirmed;
+      out.push_back(std::move(bridge));
+    }
+  }
+  return out;
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,133 @@
+#include "perception/perceive.h"
+
+#include <chrono>
+
+#include "hw_bridge/base/error.h"
+#include "perception/assemble.h"
+#include "perception/axis_points.h"
+#include "perception/axis_space.h"
+#include "perception/bridges.h"
+#include "perception/coverage.h"
+#include "perception/fragments.h"
+#include "perception/joining.h"
+#include "perception/view_image.h"
+
+namespace tubetwin {
+namespace {
+
+/// Tubes lean out over the walls, but not by more than this share of their length.
+constexpr double kOutside = 0.6;
+/// Longest gap that is bridged, as a share of the tube's length.
+constexpr double kLongestGap = 0.4;
+
+/// Wall time of the steps; never part of a result.
+class StepTimer {
+ public:
+  /// Milliseconds since the last call.
+  double Lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
+    last_ = now;
+    return ms;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+struct Surface {
+  std::vector<ViewImage> views;
+  std::vector<SurfacePoint> points;
+  std::vector<Eigen::Vector3f> rejected_N;
+};
+
+Surface LookAtViews(const std::vector<OrganizedCloud>& clouds, const Part& part, const Bin& bin,
+                    const PerceptionConfig& config, Parallelism parallelism) {
+  Surface out;
+  out.views.resize(clouds.size());
+  std::vector<SurfaceOfView> of_view(clouds.size());
+  const Foreground foreground(bin, kOutside * part.length_m);
+  const double pitch_m = std::min(config.block_m, 0.07 * part.radius_m);
+  ParallelFor(static_cast<int>(clouds.size()), parallelism, [&](int i, int) {
+    const auto k = static_cast<std::size_t>(i);
+    out.views[k] = MakeViewImage(clouds[k], pitch_m);
+    of_view[k] = FindSurface(out.views[k], foreground, part.radius_m);
+  });
+  for (SurfaceOfView& s : of_view) {
+    out.points.insert(out.points.end(), s.points.begin(), s.points.end());
+    out.rejected_N.insert(out.rejected_N.end(), s.rejected_N.begin(), s.rejected_N.end());
+  }
+  return out;
+}
+
+/// Foreground cells of 5 mm, with at least a few points each, that lie on no tube.
+int CountUnexplained(const Surface& surface, const std::vector<PerceivedTube>& tubes,
+                     double radius_m) {
+  constexpr float kPerMetre = 200.0f;
+  constexpr int kFewest = 6;
+  VoxelIndex index;
+  std::vector<int> count;
+  std::vector<Eigen::Vector3f> sum;
+  auto add = [&](const Eigen::Vector3f& p) {
+    const int v = index.Insert(static_cast<int>(std::floor(p.x() * kPerMetre)),
+                               static_cast<int>(std::floor(p.y() * kPerMetre)),
+                               static_cast<int>(std::floor(p.z() * kPerMetre)));
+    if (v == static_cast<int>(count.size())) {
+      count.push_back(0);
+      sum.push_back(Eigen::Vector3f::Zero());
+    }
+    ++count[static_cast<std::size_t>(v)];
+    sum[static_cast<std::size_t>(v)] += p;
+  };
+  for (const SurfacePoint& p : surface.points) add(p.p_N);
+  for (const Eigen::Vector3f& p : surface.rejected_N) add(p);
+  int unexplained = 0;
+  for (std::size_t i = 0; i < count.size(); ++i) {
+    if (count[i] < kFewest) continue;
+    const Vector3 p = (sum[i] / static_cast<float>(count[i])).cast<double>();
+    double nearest = 1e9;
+    for (const PerceivedTube& tube : tubes) {
+      nearest = std::min(nearest, Closest(tube.centerline_N, p).distance_m);
+    }
+    unexplained += nearest > radius_m + 0.004;
+  }
+  return unexplained;
+}
+
+}  // namespace
+
+void PerceptionConfig::Visit(ConfigVisitor& v) {
+  v.Choice("profile", "Method of modelling.", profile, {"best"});
+  v.Field("block_m", "Side of the pixel blocks that are averaged first.", block_m, {0.0001, 0.005});
+}
+
+TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, const Bin& bin,
+                   const PerceptionConfig& config, Parallelism parallelism) {
+  if (views.empty()) throw Error(ErrorKind::kBadData, "perception: no cloud was given");
+  StepTimer timer;
+  TubeScene scene;
+  const Surface surface = LookAtViews(views, part, bin, config, parallelism);
+  scene.timing_ms.filter = timer.Lap();
+  const AxisSpace axis_space = BuildAxisSpace(surface.points);
+  scene.timing_ms.segment = timer.Lap();
+  const std::vector<Fragment> fragments =
+      FindFragments(axis_space, surface.points, part.radius_m, parallelism);
+  scene.timing_ms.fit = timer.Lap();
+  const HiddenSpace hidden(surface.views, bin, part.radius_m);
+  const std::vector<Bridge> bridges = FindBridges(fragments, hidden, kLongestGap * part.length_m);
+  const std::vector<Chain> chains = JoinFragments(fragments, bridges, part.length_m);
+  scene.tubes = AssembleTubes(chains, fragments, bridges, hidden, bin, part.length_m);
+  scene.timing_ms.join = timer.Lap();
+  AssignClasses(scene, part.radius_m);
+  const Coverage coverage = MeasureCoverage(surface.views, bin, parallelism);
+  scene.unseen_floor_m2 = coverage.unseen_floor_m2;
+  scene.unseen_m3 = coverage.unseen_m3;
+  scene.unexplained_points = CountUnexplained(surface, scene.tubes, part.radius_m);
+  scene.timing_ms.crossings = timer.Lap();
+  TubeScene::Timing& t = scene.timing_ms;
+  t.total = t.filter + t.segment + t.fit + t.join + t.crossings;
+  scene.threads = parallelism.threads;
+  return scene;
+}
+
+}  // namespace tubetwin
