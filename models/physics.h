@@ -45,7 +45,8 @@ struct RoundPhysics {
 /// Nominal values of the part, no noise in the hand-eye pose.
 RoundPhysics NominalPhysics(const Part& part);
 
-/// Uniform draws, in a fixed order, from `stream`.
+/// Uniform draws, in a fixed order, from `stream`. Throws Error(kConfig) for a range that is no
+/// [from, to].
 RoundPhysics DrawPhysics(const PhysicsRanges& ranges, const Part& part, RandomStream stream);
 
 }  // namespace tubetwin

@@ -1,0 +1,138 @@
+#include "models/part.h"
+
+#include <algorithm>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/frames.h"
+#include "hw_bridge/base/text.h"
+#include "models/embedded.h"
+#include "models/json_visitor.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr const char kFolder[] = "parts/", kSuffix[] = ".toml";
+constexpr double kHookRadius_m = 0.05, kShortestEnd_m = 0.02;
+
+// Name of a shipped part from the path of its file; empty for other files.
+std::string NameOfText(const EmbeddedText& text) {
+  if (!text.path.starts_with(kFolder) || !text.path.ends_with(kSuffix)) return "";
+  const std::size_t folder = sizeof kFolder - 1, suffix = sizeof kSuffix - 1;
+  return std::string(text.path.substr(folder, text.path.size() - folder - suffix));
+}
+
+void CheckOrder(const std::vector<double>& range, const char* key, ErrorKind kind,
+                const std::string& source) {
+  if (range[0] <= range[1]) return;
+  throw Error(kind, source + ": " + key + " is [" + Number(range[0]) + ", " + Number(range[1]) +
+                        "]; the first number must not be above the second");
+}
+
+// What no single field can say.
+void CheckPart(const Part& part, ErrorKind kind, const std::string& source) {
+  CheckOrder(part.friction_range, "friction_range", kind, source);
+  CheckOrder(part.bending_stiffness_range_Nm2, "bending_stiffness_range_Nm2", kind, source);
+  CheckOrder(part.bends, "bends", kind, source);
+  CheckOrder(part.bend_deg, "bend_deg", kind, source);
+  if (part.name.empty()) throw Error(kind, source + ": name is empty; a part needs one");
+  if (part.length_m < 4.0 * part.radius_m) {
+    throw Error(kind, source + ": length_m " + Number(part.length_m) + " is below four radii (" +
+                          Number(4.0 * part.radius_m) + "); that is no tube");
+  }
+  const double hooks_m =
+      2.0 * (kHookRadius_m * Radians(part.bend_deg[1]) + kShortestEnd_m) + kShortestEnd_m;
+  if (part.shape == "hooks" && part.length_m < hooks_m) {
+    throw Error(kind, source + ": length_m " + Number(part.length_m) +
+                          " is too short for hooks of " + Number(part.bend_deg[1]) +
+                          " degrees; at least " + Number(hooks_m));
+  }
+}
+
+Part Shipped(const EmbeddedText& text) {
+  ConfigSource source;
+  source.AddText(std::string(text.text), std::string(text.path));
+  Part part;
+  source.ReadInto(part);
+  CheckPart(part, ErrorKind::kConfig, std::string(text.path));
+  return part;
+}
+
+}  // namespace
+
+void Part::Visit(ConfigVisitor& v) {
+  v.Field("name", "what the part is called", name);
+  v.Choice("kind", "rigid: one body; hose: a bending chain of links", kind, {"rigid", "hose"});
+  v.Field("radius_m", "outer radius", radius_m, {0.003, 0.04});
+  v.Field("length_m", "length along the centerline", length_m, {0.05, 2.0});
+  v.Field("mass_kg", "mass of one tube", mass_kg, {0.001, 5.0});
+  v.Field("friction", "nominal friction, tube on tube and on the bin", friction, {0.01, 3.0});
+  v.Field("friction_range", "friction is drawn between these", friction_range, 2, {0.01, 3.0});
+  v.Field("bending_stiffness_Nm2", "E times I, hoses only", bending_stiffness_Nm2, {0.005, 50.0});
+  v.Field("bending_stiffness_range_Nm2", "bending stiffness is drawn between these",
+          bending_stiffness_range_Nm2, 2, {0.005, 50.0});
+  v.Field("links", "rigid links of a hose", links, {8, 12});
+  v.Choice("shape",
+           "how random shapes are drawn: arcs (planar bends), hooks (a bend near each end), "
+           "polyline (corners)",
+           shape, {"arcs", "hooks", "polyline"});
+  v.Field("bends", "number of bends, from and to", bends, 2, {1, 20});
+  v.Field("bend_deg", "angle of one bend, from and to", bend_deg, 2, {0, 170});
+  v.Field("colour_rgb", "colour in pictures, 0 to 1", colour_rgb, 3, {0, 1});
+}
+
+std::vector<std::string> PartNames() {
+  std::vector<std::string> names;
+  for (const EmbeddedText& text : EmbeddedTexts()) {
+    if (const std::string name = NameOfText(text); !name.empty()) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Part LoadPart(const std::string& name_or_path) {
+  if (name_or_path.ends_with(kSuffix)) {
+    ConfigSource source;
+    source.AddFile(name_or_path);
+    Part part;
+    source.ReadInto(part);
+    CheckPart(part, ErrorKind::kConfig, name_or_path);
+    return part;
+  }
+  for (const EmbeddedText& text : EmbeddedTexts()) {
+    if (NameOfText(text) == name_or_path && !name_or_path.empty()) return Shipped(text);
+  }
+  throw Error(ErrorKind::kMissing, "no part is named '" + name_or_path + "'; nearest is '" +
+                                       NearestName(name_or_path, PartNames()) + "'; known: " +
+                                       Join(PartNames()) + ", or the path of a part file (.toml)");
+}
+
+Part PartFromJson(const JsonView& view) {
+  if (view.IsString()) {
+    try {
+      return LoadPart(view.AsString());
+    } catch (const Error& error) {
+      // A missing name keeps its kind, and says which file asked for it.
+      throw Error(error.kind(), view.source() + ": part: " + error.what());
+    }
+  }
+  if (!view.IsObject()) view.Fail("must be a part's name or an object with its fields");
+  Part part;
+  ReadJsonInto(view, [&part](ConfigVisitor& v) { part.Visit(v); });
+  CheckPart(part, ErrorKind::kBadData, view.source() + ": part");
+  return part;
+}
+
+Json PartToJson(const Part& part) {
+  const auto all_fields = [](Part copy) {
+    return WriteJson([&copy](ConfigVisitor& v) { copy.Visit(v); });
+  };
+  const Json fields = all_fields(part);
+  const std::vector<std::string> shipped = PartNames();
+  if (std::find(shipped.begin(), shipped.end(), part.name) != shipped.end() &&
+      all_fields(LoadPart(part.name)) == fields) {
+    return part.name;
+  }
+  return fields;
+}
+
+}  // namespace tubetwin
