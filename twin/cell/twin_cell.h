@@ -38,9 +38,11 @@ class TwinCell {
   /// Generalised positions of the whole world now (layout of ModelXml's model).
   std::vector<double> Qpos() const;
 
+  struct Impl;  ///< The room's own; nobody else sees its definition.
+
  private:
   friend class Truth;
-  struct Impl;
+  friend class TwinCellProbe;  ///< Tests of the room look at the world through it.
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,0 +1,224 @@
+#include "twin/cell/cell_world.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "hw_bridge/base/error.h"
+#include "scenes/bin_body.h"
+#include "scenes/engine/engine_error.h"
+#include "scenes/engine/stepping.h"
+#include "twin/cell/arm_body.h"
+#include "twin/cell/contact_bits.h"
+#include "twin/cell/gripper_body.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr std::array<float, 4> kPlateRgba = {0.55f, 0.56f, 0.58f, 1.0f};
+constexpr std::array<float, 4> kTrayRgba = {0.70f, 0.66f, 0.55f, 1.0f};
+
+constexpr double kPlateThickness_m = 0.02;
+constexpr float kCellAlbedo = 0.45f;
+
+/// A box of the scene. Friction is that of the tubes: the material pair is drawn as one number.
+void AddBox(mjSpec& spec, const std::string& name, const RigidTransform& X_BBox,
+            const Vector3& half_m, double friction, const std::array<float, 4>& rgba) {
+  mjsGeom* box = mjs_addGeom(mjs_findBody(&spec, "world"), nullptr);
+  SetName(box->element, name);
+  box->type = mjGEOM_BOX;
+  SetPose(X_BBox, box->pos, box->quat);
+  for (int k = 0; k < 3; ++k) box->size[k] = half_m[k];
+  box->contype = 0;
+  box->conaffinity = kSceneAccepts;
+  box->condim = 4;
+  box->friction[0] = friction;
+  box->friction[1] = 0.002;
+  box->friction[2] = 0.0001;
+  box->solref[0] = 0.005;
+  box->solimp[0] = 0.95;
+  box->solimp[1] = 0.99;
+  std::copy(rgba.begin(), rgba.end(), box->rgba);
+}
+
+/// The bin as piles have it, on a plinth set back so that nothing rests on its edge.
+void AddBinOnPlinth(mjSpec& spec, const Bin& bin, double friction) {
+  BinBodyOptions options;
+  options.X_WN = bin.X_BN;
+  options.friction = friction;
+  AddBin(spec, bin, options);
+  for (const char* name :
+       {"bin_floor", "bin_wall_x+", "bin_wall_x-", "bin_wall_y+", "bin_wall_y-"}) {
+    mjsGeom* geom = mjs_asGeom(mjs_findElement(&spec, mjOBJ_GEOM, name));
+    TT_CHECK(geom != nullptr);
+    geom->contype = 0;
+    geom->conaffinity = kSceneAccepts;
+  }
+  const double t = Bin::kWallThickness_m;
+  const double below_m = bin.X_BN.translation().z() - t;
+  if (below_m <= 0.0) return;
+  AddBox(spec, "bin_plinth", bin.X_BN * Translation(0, 0, -t - 0.5 * below_m),
+         {0.9 * bin.half_x_m(), 0.9 * bin.half_y_m(), 0.5 * below_m}, friction, kPlateRgba);
+}
+
+void AddTray(mjSpec& spec, const CellLayout& layout, double friction) {
+  // A solid block from the plate up to the surface.
+  const double half_m = 0.5 * layout.tray_size_m;
+  const double half_height_m = 0.5 * layout.X_BT.translation().z();
+  TT_CHECK(half_height_m > 0.0);
+  AddBox(spec, "tray", layout.X_BT * Translation(0, 0, -half_height_m),
+         {half_m, half_m, half_height_m}, friction, kTrayRgba);
+}
+
+void SetLooks(mjSpec& spec) {
+  spec.stat.extent = 1.0;
+  spec.stat.center[0] = 0.4;
+  spec.stat.center[1] = -0.2;
+  spec.stat.center[2] = 0.3;
+  spec.visual.global.offwidth = 1280;
+  spec.visual.global.offheight = 720;
+  spec.visual.map.znear = 0.02f;
+  mjsLight* light = mjs_addLight(mjs_findBody(&spec, "world"), nullptr);
+  light->type = mjLIGHT_DIRECTIONAL;
+  const double direction[3] = {-0.35, 0.25, -0.9}, position[3] = {1.0, -1.0, 2.5};
+  std::copy(direction, direction + 3, light->dir);
+  std::copy(position, position + 3, light->pos);
+}
+
+/// Names of the elements that hold the arm's start position.
+void SetHome(const mjModel& model, mjData& data, const JointVector& q) {
+  for (int i = 0; i < kNumJoints; ++i) {
+    data.qpos[model.jnt_qposadr[IdOf(model, mjOBJ_JOINT, ArmJointName(i))]] = q[i];
+  }
+}
+
+}  // namespace
+
+JointVector HomePosition(const ArmModel& arm, const CellLayout& layout, const Bin& bin) {
+  const Vector3 p_BE = bin.X_BN.translation() + Vector3(0, 0, layout.carry_height_m);
+  const RigidTransform X_BF = MakeTransform(RotX(kPi), p_BE) * layout.X_FE.inverse();
+  const InverseNearResult home = InverseWorking(arm, X_BF);
+  if (home.status != InverseNearResult::Status::kFound) {
+    throw Error(ErrorKind::kConfig,
+                "cell: the arm does not reach the middle of the bin at carry height " +
+                    std::to_string(layout.carry_height_m) + " m");
+  }
+  return home.q;
+}
+
+CellWorld::CellWorld(const Pile& pile, const CellLayout& layout, const RoundPhysics& physics) {
+  EngineOptions options;
+  options.timestep_s = Seconds(kControlPeriod);
+  options.impratio = 100.0;
+  spec_ = MakeSpec(options);
+  SetLooks(*spec_);
+  AddBox(*spec_, "plate", Translation(0.25, -0.25, -0.5 * kPlateThickness_m),
+         Vector3(1.0, 1.0, 0.5 * kPlateThickness_m), physics.tube_friction, kPlateRgba);
+  AddBinOnPlinth(*spec_, pile.bin, physics.tube_friction);
+  AddTray(*spec_, layout, physics.tube_friction);
+  mjsBody& tool = AddArm(*spec_, Hc10(), layout);
+  AddGripper(*spec_, tool, layout, gripper_, physics);
+  const TubeBodyOptions tube_options = MakeTubeBodyOptions(pile.part, physics, pile.bin.X_BN);
+  for (const PileTube& tube : pile.tubes) {
+    tubes_.emplace_back(*spec_, "tube" + std::to_string(tube.id), tube, tube_options);
+  }
+
+  model_ = Compile(*spec_, "the cell");
+  data_ = MakeData(*model_);
+  SetHome(*model_, *data_, HomePosition(Hc10(), layout, pile.bin));
+  MapGeoms(pile);
+  Refresh();
+}
+
+void CellWorld::Refresh() {
+  GuardEngine([&] { mj_forward(model_.get(), data_.get()); });
+}
+
+void CellWorld::MapGeoms(const Pile& pile) {
+  tube_of_geom_.assign(model_->ngeom, -1);
+  albedo_of_geom_.assign(model_->ngeom, kCellAlbedo);
+  for (std::size_t tube = 0; tube < tubes_.size(); ++tube) {
+    tubes_[tube].Bind(*model_);
+    for (const int geom : tubes_[tube].geoms()) tube_of_geom_[geom] = static_cast<int>(tube);
+  }
+  double tube_albedo = 0.0;
+  for (const double channel : pile.part.colour_rgb) tube_albedo += channel / 3.0;
+  for (int geom = 0; geom < model_->ngeom; ++geom) {
+    if (tube_of_geom_[geom] >= 0) albedo_of_geom_[geom] = static_cast<float>(tube_albedo);
+  }
+}
+
+void CellWorld::Step() {
+  GuardEngine([&] {
+    mj_step2(model_.get(), data_.get());
+    mj_step1(model_.get(), data_.get());
+  });
+  ++steps_;
+  const StepStatus status = StatusOf(*data_);
+  if (status != StepStatus::kOk) {
+    throw Error(ErrorKind::kInternal, "the cell's physics is " + std::string(ToString(status)) +
+                                          " at " + std::to_string(data_->time) + " s");
+  }
+}
+
+ScanGeometry CellWorld::Geometry() const {
+  ScanGeometry geometry;
+  for (int geom = 0; geom < model_->ngeom; ++geom) {
+    const mjtNum* R = data_->geom_xmat + 9 * geom;
+    const mjtNum* size = model_->geom_size + 3 * geom;
+    const Vector3 centre(data_->geom_xpos + 3 * geom);
+    const Vector3 axis(R[2], R[5], R[8]);
+    const int tube = tube_of_geom_[geom];
+    const std::uint32_t label =
+        tube >= 0 ? kLabelFirstTube + static_cast<std::uint32_t>(tube) : kLabelCell;
+    const float albedo = albedo_of_geom_[geom];
+    const auto capsule = [&](double half_m) {
+      geometry.capsules.push_back(
+          {centre - half_m * axis, centre + half_m * axis, size[0], label, albedo});
+    };
+    switch (model_->geom_type[geom]) {
+      case mjGEOM_CAPSULE:
+        capsule(size[1]);
+        break;
+      case mjGEOM_SPHERE:
+        capsule(1e-4);  // A ray tracer wants a length.
+        break;
+      case mjGEOM_CYLINDER:
+        // Arm parts seen in passing: round ends instead of flat ones.
+        capsule(std::max(1e-4, size[1] - size[0]));
+        break;
+      case mjGEOM_BOX: {
+        Matrix3 R_BBox;
+        R_BBox << R[0], R[1], R[2], R[3], R[4], R[5], R[6], R[7], R[8];
+        geometry.boxes.push_back(
+            {MakeTransform(R_BBox, centre), Vector3(size[0], size[1], size[2]), label, albedo});
+        break;
+      }
+      default:
+        TT_CHECK(!"a geom that no ray can hit");
+    }
+  }
+  return geometry;
+}
+
+std::string CellWorld::Xml() const {
+  std::string xml(1 << 20, '\0');
+  std::array<char, 1000> error{};
+  int missing = 0;
+  for (int tries = 0; tries < 2; ++tries) {
+    GuardEngine([&] {
+      missing = mj_saveXMLString(spec_.get(), xml.data(), static_cast<int>(xml.size()),
+                                 error.data(), static_cast<int>(error.size()));
+    });
+    if (missing <= 0) break;
+    xml.resize(static_cast<std::size_t>(missing) + 1);
+  }
+  if (missing != 0) {
+    throw Error(ErrorKind::kInternal,
+                "the cell cannot be written as XML: " + std::string(error.data()));
+  }
+  xml.resize(xml.find('\0'));
+  return xml;
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,180 @@
+#include "twin/cell/gripper_body.h"
+
+#include <algorithm>
+#include <string>
+
+#include "hw_bridge/base/error.h"
+#include "scenes/engine/mj_handles.h"
+#include "twin/cell/contact_bits.h"
+
+namespace tubetwin {
+namespace {
+
+// Masses below the sensor sum to gripper and coupling of models/layout.h.
+constexpr double kFingerMass_kg = 0.10;
+constexpr double kCarriageMass_kg = 0.05;
+/// Centre of mass of palm and coupling in K: the gearbox sits near the coupling.
+constexpr double kPalmCentre_m = 0.050;
+
+constexpr double kPadHalfThickness_m = 0.003;
+/// Bar behind the pad: from its lower edge up towards the palm.
+constexpr double kFingerBar_m = 0.075;
+
+void SetInertial(mjsBody& body, double mass_kg, const Vector3& centre_m, double ixx, double iyy,
+                 double izz) {
+  body.explicitinertial = 1;
+  body.mass = mass_kg;
+  const double inertia[3] = {ixx, iyy, izz};
+  for (int k = 0; k < 3; ++k) {
+    body.ipos[k] = centre_m[k];
+    body.inertia[k] = inertia[k];
+  }
+}
+
+mjsJoint& AddSlide(mjsBody& body, const char* name, const Vector3& axis, double upper_m) {
+  mjsJoint* joint = mjs_addJoint(&body, nullptr);
+  SetName(joint->element, name);
+  joint->type = mjJNT_SLIDE;
+  for (int k = 0; k < 3; ++k) joint->axis[k] = axis[k];
+  joint->limited = mjLIMITED_TRUE;
+  joint->range[0] = 0.0;
+  joint->range[1] = upper_m;
+  joint->solref_limit[0] = 0.005;
+  return *joint;
+}
+
+/// The pad as measured: priority 1, so that its friction and stiffness win over the tube's.
+void AddPad(mjsBody& finger, const char* name, const GripperSpec& gripper,
+            const RoundPhysics& physics) {
+  mjsGeom* pad = mjs_addGeom(&finger, nullptr);
+  SetName(pad->element, name);
+  pad->type = mjGEOM_BOX;
+  pad->size[0] = 0.5 * gripper.pad_width_m;
+  pad->size[1] = kPadHalfThickness_m;
+  pad->size[2] = 0.5 * gripper.pad_height_m;
+  pad->mass = 0.0;
+  pad->priority = 1;
+  pad->condim = 4;
+  pad->friction[0] = physics.pad_friction;
+  pad->friction[1] = physics.pad_torsion_m;
+  pad->friction[2] = 0.0001;
+  pad->solref[0] = 0.005;
+  pad->solref[1] = 1.0;
+  pad->solimp[0] = 0.99;
+  pad->solimp[1] = 0.999;
+  pad->solimp[2] = 0.001;
+  pad->contype = kGripperBit;
+  pad->conaffinity = kTubeBit;
+  const float rgba[4] = {0.15f, 0.15f, 0.16f, 1.0f};
+  std::copy(rgba, rgba + 4, pad->rgba);
+}
+
+/// One finger; `side` +1 at +y, -1 at -y. Origin: centre of its pad.
+void AddFinger(mjsBody& carriage, double side, const char* joint_name, const char* pad_name,
+               const GripperSpec& gripper, const RoundPhysics& physics) {
+  mjsBody* finger = mjs_addBody(&carriage, nullptr);
+  SetName(finger->element, std::string(joint_name) + "_body");
+  finger->pos[1] = side * (0.5 * gripper.stroke_m + kPadHalfThickness_m);
+  SetInertial(*finger, kFingerMass_kg, Vector3(0, 0, -0.03), 5e-5, 5e-5, 5e-5);
+  mjsJoint& slide = AddSlide(*finger, joint_name, Vector3(0, -side, 0), 0.5 * gripper.stroke_m);
+  slide.armature = 0.1;
+  slide.damping[0] = 2.0;
+  AddPad(*finger, pad_name, gripper, physics);
+
+  mjsGeom* bar = mjs_addGeom(finger, nullptr);
+  SetName(bar->element, std::string(joint_name) + "_bar");
+  bar->type = mjGEOM_BOX;
+  const double half_thickness_m = 0.5 * (gripper.finger_thickness_m - 2 * kPadHalfThickness_m);
+  bar->size[0] = 0.5 * gripper.pad_width_m;
+  bar->size[1] = half_thickness_m;
+  bar->size[2] = 0.5 * kFingerBar_m;
+  bar->pos[1] = side * (kPadHalfThickness_m + half_thickness_m);
+  bar->pos[2] = 0.5 * gripper.pad_height_m - 0.5 * kFingerBar_m;
+  bar->mass = 0.0;
+  bar->condim = 4;
+  bar->friction[0] = 0.3;
+  bar->solref[0] = 0.005;
+  bar->contype = kGripperBit;
+  bar->conaffinity = kTubeBit;
+  const float rgba[4] = {0.25f, 0.25f, 0.27f, 1.0f};
+  std::copy(rgba, rgba + 4, bar->rgba);
+}
+
+void AddCoupling(mjSpec& spec, const char* name, const char* follower, const char* leader,
+                 const std::array<double, 5>& c) {
+  mjsEquality* equality = mjs_addEquality(&spec, nullptr);
+  SetName(equality->element, name);
+  equality->type = mjEQ_JOINT;
+  equality->objtype = mjOBJ_JOINT;
+  mjs_setString(equality->name1, follower);
+  mjs_setString(equality->name2, leader);
+  std::copy(c.begin(), c.end(), equality->data);
+  equality->solref[0] = 0.002;
+  equality->solref[1] = 1.0;
+  equality->solimp[0] = 0.95;
+  equality->solimp[1] = 0.999;
+  equality->solimp[2] = 0.001;
+}
+
+/// A fixed tendon with coefficients (1, 1): each pad gets the whole force of the actuator.
+void AddGripActuator(mjSpec& spec, double force_N) {
+  mjsTendon* tendon = mjs_addTendon(&spec, nullptr);
+  SetName(tendon->element, kGripActuator);
+  mjs_wrapJoint(tendon, kFingerLeftJoint, 1.0);
+  mjs_wrapJoint(tendon, kFingerRightJoint, 1.0);
+  mjsActuator* grip = mjs_addActuator(&spec, nullptr);
+  SetName(grip->element, kGripActuator);
+  double damping[1] = {kGripDamping_Ns_m};
+  const char* refused = mjs_setToPosition(grip, kGripStiffness_N_m, damping, nullptr, nullptr, 0);
+  TT_CHECK(refused == nullptr || refused[0] == '\0');
+  grip->trntype = mjTRN_TENDON;
+  mjs_setString(grip->target, kGripActuator);
+  grip->forcelimited = mjLIMITED_TRUE;
+  grip->forcerange[0] = -force_N;
+  grip->forcerange[1] = force_N;
+}
+
+}  // namespace
+
+AdvancePolynomial FitTipAdvance(const GripperSpec& spec) {
+  constexpr int kSamples = 86;
+  Eigen::Matrix<double, kSamples, 4> A;
+  Eigen::Matrix<double, kSamples, 1> advance;
+  for (int i = 0; i < kSamples; ++i) {
+    // The unknowns are scaled by the half stroke; metres to the fourth are tiny.
+    const double u = static_cast<double>(i) / (kSamples - 1);
+    A.row(i) << u, u * u, u * u * u, u * u * u * u;
+    advance[i] = TipAdvance(spec.stroke_m * (1.0 - u)) - TipAdvance(spec.stroke_m);
+  }
+  const Eigen::Vector4d scaled = A.colPivHouseholderQr().solve(advance);
+  AdvancePolynomial fit;
+  fit.largest_error_m = (A * scaled - advance).cwiseAbs().maxCoeff();
+  double scale = 1.0;
+  for (int k = 1; k <= 4; ++k) {
+    scale *= 0.5 * spec.stroke_m;
+    fit.c[k] = scaled[k - 1] / scale;
+  }
+  return fit;
+}
+
+void AddGripper(mjSpec& spec, mjsBody& tool, const CellLayout& layout, const GripperSpec& gripper,
+                const RoundPhysics& physics) {
+  const double palm_kg = kGripperMass_kg + kCouplingMass_kg - 2 * kFingerMass_kg - kCarriageMass_kg;
+  SetInertial(tool, palm_kg, Vector3(0, 0, kPalmCentre_m), 2e-3, 2e-3, 1e-3);
+
+  mjsBody* carriage = mjs_addBody(&tool, nullptr);
+  SetName(carriage->element, kCarriageJoint + std::string("_body"));
+  const RigidTransform X_KE = layout.X_FK.inverse() * layout.X_FE;
+  SetPose(X_KE * Translation(0, 0, -PadRetreat(gripper.stroke_m)), carriage->pos, carriage->quat);
+  SetInertial(*carriage, kCarriageMass_kg, Vector3(0, 0, -0.06), 2e-5, 2e-5, 2e-5);
+  mjsJoint& slide = AddSlide(*carriage, kCarriageJoint, Vector3::UnitZ(), 1.0);
+  slide.limited = mjLIMITED_FALSE;  // The coupling holds it.
+
+  AddFinger(*carriage, +1.0, kFingerLeftJoint, kPadLeftGeom, gripper, physics);
+  AddFinger(*carriage, -1.0, kFingerRightJoint, kPadRightGeom, gripper, physics);
+  AddCoupling(spec, "fingers_move_together", kFingerLeftJoint, kFingerRightJoint, {0, 1, 0, 0, 0});
+  AddCoupling(spec, "tips_advance", kCarriageJoint, kFingerLeftJoint, FitTipAdvance(gripper).c);
+  AddGripActuator(spec, gripper.min_force_N);
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+
+#include "hw_bridge/cell/devices.h"
+#include "models/arm.h"
+#include "twin/cell/cell_world.h"
+
+namespace tubetwin {
+
+/// The arm of the twin: computed torque at the control period through torque motors. Every step the
+/// reference is interpolated on the running trajectory (never held), tau = kp e + kv ed + bias +
+/// M qdd_ref + damping and friction at the reference's speed + the payload's weight, clamped to the
+/// joints' effort. Stops slow the time along the path down, so they never leave it.
+class TwinArm : public Arm {
+ public:
+  /// `arm` and `world` must outlive it; holds the position that the world has now.
+  TwinArm(const ArmModel& arm, CellWorld& world);
+
+  ArmState State() const override;
+  CommandResult Start(const CheckedTrajectory& trajectory) override;
+  CommandResult Append(const CheckedTrajectory& continuation) override;
+  void Stop(StopKind kind) override;
+  void SetPayload(double mass_kg, const Vector3& p_FC) override;
+
+  /// Sets the motors' torques for the coming step. Call between mj_step1 and mj_step2.
+  void Control();
+
+  /// True joint positions, not quantised; for the world's own use.
+  JointVector TruePosition() const;
+  /// Reference of the coming step, and whether any torque was cut to the effort limit so far: for
+  /// tests of tracking.
+  const JointVector& reference_q() const { return reference_.q; }
+  bool clamped() const { return clamped_; }
+  const JointVector& torque_Nm() const { return torque_Nm_; }
+
+ private:
+  struct Reference {
+    JointVector q = JointVector::Zero(), qd = JointVector::Zero(), qdd = JointVector::Zero();
+  };
+
+  void AdvanceReference();
+  JointVector PayloadTorque() const;
+  void Fault(const std::string& text);
+
+  const ArmModel& arm_;
+  CellWorld& world_;
+  const mjModel& model_;
+  mjData& data_;
+  std::array<int, kNumJoints> qpos_{}, dof_{}, motor_{};
+  int link6_ = 0;
+  JointVector kp_, kv_;
+  std::vector<double> acceleration_, inertia_;  ///< [nv] scratch of M qdd.
+
+  ArmMode mode_ = ArmMode::kReady;
+  std::string fault_;
+  JointTrajectory trajectory_;
+  double progress_s_ = 0.0;
+  bool done_ = true;
+  /// Time along the path runs at rate_; a stop takes it to zero from ramp_from_ within ramp_s_.
+  double rate_ = 1.0, ramp_from_ = 1.0, ramp_s_ = 0.0, ramp_elapsed_s_ = 0.0;
+  bool stopping_ = false;
+  Reference reference_;
+  double payload_kg_ = 0.0;
+  Vector3 p_FPayload_ = Vector3::Zero();
+  JointVector torque_Nm_ = JointVector::Zero();
+  bool clamped_ = false;
+};
+
+}  // namespace tubetwin

@@ -1,0 +1,65 @@
+#include "twin/cell/twin_cell.h"
+
+#include <cmath>
+#include <utility>
+
+#include "twin/cell/twin_cell_impl.h"
+
+namespace tubetwin {
+
+TimeNs TwinClock::Now() const { return parts_.world.now(); }
+
+void TwinClock::AdvanceTo(TimeNs t) {
+  while (Now() < t) parts_.Step();
+}
+
+TwinCell::Impl::Impl(const Pile& pile, const TwinCellOptions& options)
+    : world(pile, options.layout, options.physics),
+      arm(Hc10(), world),
+      gripper(world),
+      wrist(world, options.physics, RandomStream(options.seed, options.round, "wrench")),
+      scanner(Hc10(), world, arm,
+              {options.layout, pile.bin, options.physics, options.scan, options.parallelism},
+              RandomStream(options.seed, options.round, "scan")),
+      clock(*this),
+      cell{clock, arm, gripper, wrist, scanner, Hc10(), options.layout, pile.bin},
+      start_pile(pile) {
+  // The first sample of the wrist, with the arm already held by its motors.
+  arm.Control();
+  gripper.Control();
+  world.Refresh();
+  wrist.Sample();
+}
+
+void TwinCell::Impl::Step() {
+  arm.Control();
+  gripper.Control();
+  world.Step();
+  wrist.Sample();
+  // Frame k is due at k/30 s rounded to a step.
+  constexpr double kFramesPerSecond = 30.0;
+  const double due_s = (frames + 1) / kFramesPerSecond;
+  if (world.now() >= kControlPeriod * std::llround(due_s / Seconds(kControlPeriod))) {
+    ++frames;
+    if (observer) observer();
+  }
+}
+
+TwinCell::TwinCell(const Pile& pile, const TwinCellOptions& options)
+    : impl_(std::make_unique<Impl>(pile, options)) {}
+TwinCell::~TwinCell() = default;
+
+Cell& TwinCell::cell() { return impl_->cell; }
+
+void TwinCell::SetFrameObserver(std::function<void()> observer) {
+  impl_->observer = std::move(observer);
+}
+
+std::string TwinCell::ModelXml() const { return impl_->world.Xml(); }
+
+std::vector<double> TwinCell::Qpos() const {
+  const mjData& data = impl_->world.data();
+  return std::vector<double>(data.qpos, data.qpos + impl_->world.model().nq);
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,49 @@
+#include "twin/cell/twin_scanner.h"
+
+#include <utility>
+
+#include "hw_bridge/base/error.h"
+
+namespace tubetwin {
+
+TwinScanner::TwinScanner(const ArmModel& arm_model, const CellWorld& world, const TwinArm& arm,
+                         Setup setup, RandomStream stream)
+    : arm_model_(arm_model), world_(world), arm_(arm), setup_(std::move(setup)), stream_(stream) {
+  setup_.settings.noise_scale *= setup_.physics.depth_noise_scale;
+}
+
+RigidTransform TwinScanner::TrueX_BS() const {
+  return FlangePose(arm_model_, arm_.TruePosition()) * setup_.layout.X_FS *
+         setup_.physics.X_SbelievedS;
+}
+
+CommandResult TwinScanner::Trigger() {
+  if (Status() == ScanStatus::kBusy) {
+    return {CommandResult::Status::kRejected, "a scan is running"};
+  }
+  Shot shot;
+  shot.geometry = world_.Geometry();
+  shot.X_BS = TrueX_BS();
+  shot.X_NSBelieved =
+      setup_.bin.X_BN.inverse() * FlangePose(arm_model_, arm_.State().q) * setup_.layout.X_FS;
+  shot.ready = world_.now() + FromSeconds(setup_.settings.spec.scan_time_s);
+  shot.index = taken_++;
+  shot_ = std::move(shot);
+  return {};
+}
+
+ScanStatus TwinScanner::Status() const {
+  if (!shot_) return ScanStatus::kIdle;
+  return world_.now() < shot_->ready ? ScanStatus::kBusy : ScanStatus::kReady;
+}
+
+OrganizedCloud TwinScanner::Take() {
+  TT_CHECK(Status() == ScanStatus::kReady);
+  OrganizedCloud cloud = CastScan(shot_->geometry, shot_->X_BS, setup_.settings,
+                                  stream_.Fork("shot", shot_->index), setup_.parallelism);
+  cloud.X_NS = shot_->X_NSBelieved;
+  shot_.reset();
+  return cloud;
+}
+
+}  // namespace tubetwin
