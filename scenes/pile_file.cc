@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
+#include "scenes/pile.h"
+#include "scenes/pile_text.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr const char kDefaultPart[] = "leao2022";
+constexpr std::array<double, 3> kDefaultBinSize_m = {0.80, 0.60, 0.20};
+constexpr double kSameLength = 0.01;  // Relative; then a tube weighs what the part says.
+
+// Mass of a tube of its own length.
+double MassOf(const Part& part, const Polyline& line) {
+  const double ratio = Length(line) / part.length_m;
+  return std::abs(ratio - 1.0) < kSameLength ? part.mass_kg : part.mass_kg * ratio;
+}
+
+// Gives a tube what a part says beyond its shape.
+void ApplyPart(const Part& part, PileTube& tube) {
+  tube.radius_m = part.radius_m;
+  tube.mass_kg = MassOf(part, tube.centerline_N);
+  if (!part.is_hose()) tube.rest_centerline_N.reset();
+  const int links = static_cast<int>(tube.centerline_N.size()) - 1;
+  // A curve that was no chain of links becomes one; a degenerate one is left for ValidatePile.
+  if (part.is_hose() && !tube.rest_centerline_N && links != part.links && links >= 1) {
+    tube.centerline_N = ResampleCount(tube.centerline_N, part.links + 1);
+  }
+}
+
+PileTube TubeFromJson(const JsonView& view, const Part& part) {
+  PileTube tube;
+  const std::int64_t id = view.Field("id").AsInteger();
+  if (id < 0 || id > std::numeric_limits<int>::max()) {
+    view.Field("id").Fail("is " + std::to_string(id) + "; allowed: 0 to 2147483647");
+  }
+  tube.id = static_cast<int>(id);
+  tube.centerline_N = view.Field("centerline_m").AsPolyline();
+  const auto radius = view.Optional("radius_m");
+  tube.radius_m = radius ? radius->AsNumber() : part.radius_m;
+  const auto mass = view.Optional("mass_kg");
+  tube.mass_kg = mass ? mass->AsNumber() : MassOf(part, tube.centerline_N);
+  if (const auto rest = view.Optional("rest_centerline_m")) {
+    tube.rest_centerline_N = rest->AsPolyline();
+  }
+  return tube;
+}
+
+Pile PileFromJson(const JsonView& document, const PileOverrides& overrides) {
+  RequireSchema(document, "pile");
+  Pile pile;
+  pile.bin = BinFromJson(document.Field("bin"));
+  pile.part = overrides.part ? LoadPart(*overrides.part) : PartFromJson(document.Field("part"));
+  const JsonView tubes = document.Field("tubes");
+  for (std::size_t i = 0; i < tubes.Size(); ++i) {
+    pile.tubes.push_back(TubeFromJson(tubes.Item(i), pile.part));
+    if (overrides.part) ApplyPart(pile.part, pile.tubes.back());
+  }
+  if (const auto seed = document.Optional("seed")) {
+    pile.seed = static_cast<std::uint64_t>(seed->AsInteger());
+  }
+  if (const auto settled = document.Optional("settled")) pile.settled = settled->AsBool();
+  return pile;
+}
+
+Pile PileFromText(const std::vector<TextTube>& tubes, const PileOverrides& overrides) {
+  Pile pile;
+  pile.part = LoadPart(overrides.part.value_or(kDefaultPart));
+  pile.bin.size_m = kDefaultBinSize_m;
+  for (const TextTube& text : tubes) {
+    PileTube tube;
+    tube.id = text.id;
+    tube.centerline_N = text.centerline_N;
+    ApplyPart(pile.part, tube);
+    // The file's own radius stands unless the caller asked for a part.
+    if (text.radius_m > 0 && !overrides.part) tube.radius_m = text.radius_m;
+    pile.tubes.push_back(tube);
+  }
+  return pile;
+}
+
+}  // namespace
+
+Pile LoadPile(const std::string& path, const PileOverrides& overrides) {
+  const std::string text = ReadFile(path);
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  if (start == std::string::npos) {
+    throw Error(ErrorKind::kBadData, path + ": is empty; a pile is needed");
+  }
+  Pile pile;
+  if (text[start] == '{' || text[start] == '[') {
+    const Json json = ReadJsonFile(path);
+    pile = PileFromJson(JsonView(json, path), overrides);
+  } else if (std::isdigit(static_cast<unsigned char>(text[start]))) {
+    pile = PileFromText(ParsePileConfiguration(text, path), overrides);
+  } else if (text.compare(start, 4, "tube") == 0) {
+    pile = PileFromText(ParsePileCsv(text, path), overrides);
+  } else {
+    const unsigned char first = static_cast<unsigned char>(text[start]);
+    throw Error(ErrorKind::kBadData,
+                path + ": byte " + std::to_string(start) + ": " +
+                    (std::isprint(first) ? "'" + std::string(1, text[start]) + "'" : "a byte") +
+                    " begins no pile; allowed: JSON (tubetwin/pile/1), CSV with the header "
+                    "tube,index,x,y,z, or the public set's tube_configurations text");
+  }
+  if (overrides.bin_size_m) pile.bin.size_m = *overrides.bin_size_m;
+  ValidatePile(pile, path);
+  return pile;
+}
+
+void SavePile(const Pile& pile, const std::string& path) {
+  Json json;
+  json["schema"] = "tubetwin/pile/1";
+  json["bin"] = ToJson(pile.bin);
+  json["part"] = PartToJson(pile.part);
+  Json tubes = Json::array();
+  for (const PileTube& tube : pile.tubes) {
+    Json entry;
+    entry["id"] = tube.id;
+    entry["centerline_m"] = ToJson(tube.centerline_N);
+    entry["radius_m"] = tube.radius_m;
+    entry["mass_kg"] = tube.mass_kg;
+    if (tube.rest_centerline_N) entry["rest_centerline_m"] = ToJson(*tube.rest_centerline_N);
+    tubes.push_back(std::move(entry));
+  }
+  json["tubes"] = std::move(tubes);
+  json["seed"] = pile.seed;
+  json["settled"] = pile.settled;
+  WriteJsonFile(json, path);
+}
+
+}  // namespace tubetwin
