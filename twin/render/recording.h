@@ -18,7 +18,7 @@ struct Recording {
   struct Overlay {
     std::vector<Polyline> lines_N;
     std::vector<int> classes;  ///< Of each line: 0 free, 1 weak, 2 strong (TubeClass's order).
-    int target = -1;  ///< Index in lines_N.
+    int target = -1;           ///< Index in lines_N.
   };
   struct Frame {
     std::vector<float> qpos;  ///< [nq] of the cell's model.
