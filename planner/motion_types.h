@@ -52,7 +52,9 @@ struct EvaluationResult {
   double settle_s = 0.0, wall_s = 0.0;     ///< Wall times.
   int threads = 1;
 };
+/// scores.json.
 Json ToJson(const EvaluationResult& result);
+Json ToJson(const CandidateMotion& motion);
 
 /// The pipeline's internal roll-outs, as the planner sees them: perceived tubes in, scores out.
 /// planner/evaluator implements it; the pick cycle is handed one.

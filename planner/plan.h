@@ -20,10 +20,24 @@ namespace tubetwin {
 struct PlannerConfig {
   double lift_m = 0.40;  ///< Upward move.
   double escape_first_lift_m = 0.05;
-  double escape_const_m = 0.0375;  ///< d_const, at least three radii.
-  double grasp_step_m = 0.01;
+  double escape_const_m =
+      0.0375;                   ///< d_const; three radii of the tube are used where that is more.
+  double wall_safety_m = 0.01;  ///< Escapes keep the whole tube this far from the bin's walls.
+  double grasp_step_m = 0.01;   ///< Between grasp points along the tube.
+  double grasp_end_m = 0.02;    ///< Least distance of a grasp point from the tube's ends.
+  double max_slope_deg = 40.0;  ///< Steepest tangent that a vertical gripper may take.
+  double finger_clearance_m = 0.002;  ///< Least distance of fingers and palm to anything.
+  int max_points = 6;  ///< Largest number of 3 mm cubes with measured points in the way.
   double weight_height = 0.2, weight_centre = 0.5, weight_trajectory = 0.3;
+  double weight_clearance = 0.1;   ///< Not in the paper: little room around the fingers costs.
+  double weight_confidence = 0.2;  ///< Not in the paper: doubt about the tube costs.
+  double weight_extra = 1.0;       ///< Not in the paper: probability that another tube comes along.
   double max_displacement_m = 1.0;
+  double min_length_share = 0.7;  ///< Tubes shorter than this share of the part come last.
+  double min_confidence = 0.3;    ///< Tubes below come last.
+  int samples = 3;                ///< Evaluator roll-outs per candidate; 1 is the paper's cost.
+  int max_plans = 8;              ///< Ranked plans that are checked for the arm and returned.
+  int plans_per_tube = 3;
   bool exclude_free = false;  ///< Free tubes stay but may not be chosen.
   double lift_speed_m_s = 0.25;
   void Visit(ConfigVisitor& v);
@@ -36,9 +50,11 @@ struct Grasp {
   RigidTransform X_NG =
       RigidTransform::Identity();  ///< z into the bin, y across the tube (closing).
   double opening_m = 0.0;          ///< Before closing.
+  double clearance_m = 0.0;        ///< Of fingers and palm to other tubes and walls, at most 20 mm.
   double cost = 0.0;
 };
 
+/// Why something was not offered. `motion` or `grasp` empty: it holds for all of them.
 struct Rejection {
   int tube = 0;
   std::string motion, grasp, reason;
@@ -52,6 +68,7 @@ struct PickPlan {
   Grasp grasp;
   bool used_simulator = false;
   double cost = 0.0;
+  std::string note;  ///< Why it is ranked last, when doubt about the tube puts it there.
 };
 
 struct PlanResult {
@@ -61,6 +78,7 @@ struct PlanResult {
   EvaluationResult evaluation;                 ///< Empty when the simulator was not needed.
   double planning_s = 0.0, evaluator_s = 0.0;  ///< Wall.
 };
+/// plan.json (schema tubetwin/plan/1).
 Json ToJson(const PlanResult& result);
 
 }  // namespace tubetwin

@@ -1,0 +1,272 @@
+#include "planner/choose.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/text.h"
+#include "planner/grasps.h"
+#include "planner/motions.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kApart_m = 0.020;  // Two tries nearer than this are one try.
+
+double WallSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Order of preference; within a rank the cost decides.
+enum Rank { kCertainFree, kCertainCovered, kDoubtfulFree, kDoubtfulCovered, kJams };
+
+struct Option {
+  Rank rank = kCertainFree;
+  PickPlan plan;
+};
+
+// A tube with what was found out about it once.
+struct Target {
+  const PerceivedTube* tube = nullptr;
+  std::string doubt;  // Empty: none.
+  GraspSites sites;
+};
+
+std::string DoubtAbout(const PerceivedTube& tube, const Part& part, const PlannerConfig& config) {
+  const double share = tube.length_m / part.length_m;
+  if (share < config.min_length_share) {
+    return "only " + Number(std::round(share * 100)) + " % of the part's length is known, below " +
+           Number(config.min_length_share * 100) + " %";
+  }
+  if (tube.confidence < config.min_confidence) {
+    return "confidence " + Number(std::round(tube.confidence * 100) / 100) + ", below " +
+           Number(config.min_confidence);
+  }
+  return "";
+}
+
+double TopOf(const TubeScene& scene) {
+  double top = 0.0;
+  for (const PerceivedTube& tube : scene.tubes) {
+    for (const Vector3& p : tube.centerline_N) top = std::max(top, p.z());
+  }
+  return top;
+}
+
+class Chooser {
+ public:
+  Chooser(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
+          const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,
+          const FeasibilityFunction& feasible, std::uint64_t seed)
+      : scene_(scene),
+        points_N_(points_N),
+        part_(part),
+        bin_(bin),
+        config_(config),
+        evaluate_(evaluate),
+        feasible_(feasible),
+        seed_(seed),
+        top_m_(TopOf(scene)) {}
+
+  PlanResult Run() {
+    const double start_s = WallSeconds();
+    std::vector<Option> options = FreeOptions();
+    const bool any_certain = CountFeasible(options) > 0;
+    if (!any_certain) {
+      std::vector<Option> covered = CoveredOptions();
+      options.insert(options.end(), covered.begin(), covered.end());
+    }
+    Rest(options);
+    result_.planning_s = WallSeconds() - start_s;
+    return std::move(result_);
+  }
+
+ private:
+  std::vector<Target> Targets(bool free) {
+    std::vector<Target> targets;
+    for (const PerceivedTube& tube : scene_.tubes) {
+      if ((tube.tube_class == TubeClass::kFree) != free) continue;
+      if (tube.centerline_N.size() < 2 || Length(tube.centerline_N) <= 0.0) continue;
+      Target target{&tube, DoubtAbout(tube, part_, config_), {}};
+      target.sites = FindGraspSites(scene_, tube, points_N_, bin_, config_);
+      Report(target.sites.rejections);
+      if (target.sites.sites.empty()) {
+        std::string reason = "no place where the gripper fits";
+        if (!target.sites.rejections.empty()) {
+          const Rejection& middle = target.sites.rejections[target.sites.rejections.size() / 2];
+          reason += ", for example " + middle.grasp + ": " + middle.reason;
+        }
+        result_.rejections.push_back({tube.id, "", "", reason});
+        continue;
+      }
+      targets.push_back(std::move(target));
+    }
+    return targets;
+  }
+
+  std::vector<Option> FreeOptions() {
+    std::vector<Option> options;
+    if (config_.exclude_free) {
+      for (const PerceivedTube& tube : scene_.tubes) {
+        if (tube.tube_class != TubeClass::kFree) continue;
+        result_.rejections.push_back({tube.id, "", "", "free tubes are excluded"});
+      }
+      return options;
+    }
+    for (const Target& target : Targets(true)) {
+      const CandidateMotion up = UpMotion(*target.tube, config_);
+      result_.candidates.push_back(up);
+      AddOptions(target, up, nullptr, options);
+    }
+    Sort(options);
+    return options;
+  }
+
+  std::vector<Option> CoveredOptions() {
+    const std::vector<Target> targets = Targets(false);
+    EvaluationRequest request;
+    request.samples = config_.samples;
+    request.seed = seed_;
+    std::vector<const Target*> target_of;
+    for (const Target& target : targets) {
+      MotionSet set = MakeMotions(scene_, *target.tube, bin_, config_);
+      Report(set.rejections);
+      for (CandidateMotion& motion : set.motions) {
+        result_.candidates.push_back(motion);
+        // The place where it would be held if all motions were equally good.
+        GraspSet grasps =
+            RankGrasps(target.sites, *target.tube, motion, 0.0, top_m_, bin_, config_);
+        if (grasps.grasps.empty()) {
+          Report(grasps.rejections);
+          result_.rejections.push_back(
+              {target.tube->id, motion.name, "", "no grasp suits this motion"});
+          continue;
+        }
+        request.grasp_at_m.push_back(grasps.grasps.front().at_m);
+        request.candidates.push_back(std::move(motion));
+        target_of.push_back(&target);
+      }
+    }
+    std::vector<Option> options;
+    if (request.candidates.empty()) return options;
+    TT_CHECK(evaluate_);
+    const double start_s = WallSeconds();
+    result_.evaluation = evaluate_(scene_, part_, bin_, request);
+    result_.evaluator_s = WallSeconds() - start_s;
+    TT_CHECK(result_.evaluation.candidates.size() == request.candidates.size());
+    for (std::size_t k = 0; k < request.candidates.size(); ++k) {
+      AddOptions(*target_of[k], request.candidates[k], &result_.evaluation.candidates[k], options);
+    }
+    Sort(options);
+    return options;
+  }
+
+  // All grasps of a tube for a motion; `score` null: the simulator was not needed.
+  void AddOptions(const Target& target, const CandidateMotion& motion, const CandidateScore* score,
+                  std::vector<Option>& options) {
+    const PerceivedTube& tube = *target.tube;
+    if (score != nullptr && score->status == CandidateScore::Status::kDiverged) {
+      result_.rejections.push_back({tube.id, motion.name, "", "the simulation diverged"});
+      return;
+    }
+    const bool jams = score != nullptr && score->status == CandidateScore::Status::kJammed;
+    const bool free = tube.tube_class == TubeClass::kFree;
+    GraspSet grasps =
+        RankGrasps(target.sites, tube, motion, score != nullptr ? score->displacement_m : 0.0,
+                   top_m_, bin_, config_);
+    Report(grasps.rejections);
+    for (const Grasp& grasp : grasps.grasps) {
+      Option option;
+      option.rank = jams                   ? kJams
+                    : target.doubt.empty() ? (free ? kCertainFree : kCertainCovered)
+                                           : (free ? kDoubtfulFree : kDoubtfulCovered);
+      option.plan.target = tube.id;
+      option.plan.target_class = tube.tube_class;
+      option.plan.motion = motion;
+      option.plan.grasp = grasp;
+      option.plan.used_simulator = score != nullptr;
+      option.plan.cost = grasp.cost + config_.weight_confidence * (1.0 - tube.confidence) +
+                         (score != nullptr ? config_.weight_extra * score->extra_probability : 0.0);
+      option.plan.note = jams ? "the motion jammed in the simulator" : target.doubt;
+      options.push_back(std::move(option));
+    }
+  }
+
+  static void Sort(std::vector<Option>& options) {
+    std::stable_sort(options.begin(), options.end(), [](const Option& a, const Option& b) {
+      if (a.rank != b.rank) return a.rank < b.rank;
+      return a.plan.cost < b.plan.cost;
+    });
+  }
+
+  // Checks the leading options of the first rank, keeps what the arm can do and says how many.
+  int CountFeasible(const std::vector<Option>& options) {
+    for (const Option& option : options) {
+      if (option.rank != kCertainFree) break;
+      Try(option);
+    }
+    return static_cast<int>(result_.plans.size());
+  }
+
+  // Checks all that was not checked yet, in order.
+  void Rest(std::vector<Option>& options) {
+    Sort(options);
+    for (const Option& option : options) {
+      if (option.rank != kCertainFree) Try(option);
+    }
+  }
+
+  void Try(const Option& option) {
+    const int id = option.plan.target;
+    if (static_cast<int>(result_.plans.size()) >= config_.max_plans) return;
+    if (kept_[id] >= config_.plans_per_tube) return;
+    std::vector<double>& tried = tried_[{id, option.plan.motion.name}];
+    for (const double at_m : tried) {
+      if (std::abs(at_m - option.plan.grasp.at_m) < kApart_m - 1e-9) return;
+    }
+    tried.push_back(option.plan.grasp.at_m);
+    PickPlan plan = option.plan;
+    const std::optional<std::string> against = feasible_(plan.grasp, plan.motion);
+    if (against) {
+      plan.grasp.X_NG.linear() = plan.grasp.X_NG.linear() * RotZ(kPi);
+      if (feasible_(plan.grasp, plan.motion)) {
+        result_.rejections.push_back(
+            {id, plan.motion.name, "at " + Number(std::round(plan.grasp.at_m * 1e3) / 1e3) + " m",
+             "arm: " + *against});
+        return;
+      }
+    }
+    ++kept_[id];
+    result_.plans.push_back(std::move(plan));
+  }
+
+  void Report(const std::vector<Rejection>& rejections) {
+    result_.rejections.insert(result_.rejections.end(), rejections.begin(), rejections.end());
+  }
+
+  const TubeScene& scene_;
+  const std::vector<Vector3>& points_N_;
+  const Part& part_;
+  const Bin& bin_;
+  const PlannerConfig& config_;
+  const EvaluateFunction& evaluate_;
+  const FeasibilityFunction& feasible_;
+  const std::uint64_t seed_;
+  const double top_m_;
+  PlanResult result_;
+  std::map<int, int> kept_;  // Plans per tube.
+  std::map<std::pair<int, std::string>, std::vector<double>> tried_;
+};
+
+}  // namespace
+
+PlanResult PlanPicks(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
+                     const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,
+                     const FeasibilityFunction& feasible, std::uint64_t seed) {
+  TT_CHECK(feasible);
+  return Chooser(scene, points_N, part, bin, config, evaluate, feasible, seed).Run();
+}
+
+}  // namespace tubetwin

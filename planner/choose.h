@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/plan.h"
+
+namespace tubetwin {
+
+/// Whether the arm can carry out a grasp and the motion after it: nothing when it can, else why
+/// not. Must be a pure function.
+using FeasibilityFunction =
+    std::function<std::optional<std::string>(const Grasp& grasp, const CandidateMotion& motion)>;
+
+/// What to pick and how, best first. Free tubes go straight up without asking the simulator (Leão
+/// et al. 2020, section 3.3); only when no plan for one survives, or `config.exclude_free`, the
+/// motions of covered tubes are scored by `evaluate`. Ranks: free tubes; covered tubes; free and
+/// then covered tubes that are in doubt (shorter than `min_length_share` of the part or of little
+/// confidence; the plan's note says which); motions that jammed in the simulator. Within a rank by
+/// cost: the grasp's, plus doubt about the tube, plus the probability that another tube comes
+/// along. Plans are checked by `feasible` in this order, each with either of the gripper's two
+/// equal yaws, until `max_plans` are found; places of one tube at least 20 mm apart, so that a
+/// second try is another try. Nothing to pick is an empty list; `rejections` says why for every
+/// tube. `points_N`: ThinPoints of the views, or empty. Deterministic but for the wall times.
+PlanResult PlanPicks(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
+                     const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,
+                     const FeasibilityFunction& feasible, std::uint64_t seed = 1);
+
+}  // namespace tubetwin

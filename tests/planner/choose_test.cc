@@ -1,0 +1,173 @@
+#include "planner/choose.h"
+
+#include "planner/points.h"
+#include "tests/support/catch.h"
+#include "tests/support/tube_scenes.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kRadius = 0.0125;
+
+std::optional<std::string> Always(const Grasp&, const CandidateMotion&) { return std::nullopt; }
+
+// Likes "escape-", sees "up" bring another tube along and "escape+" jam; keeps what it was asked.
+struct FakeEvaluator {
+  int calls = 0;
+  EvaluationRequest request;
+  EvaluateFunction Function() {
+    return [this](const TubeScene&, const Part&, const Bin&, const EvaluationRequest& r) {
+      ++calls;
+      request = r;
+      EvaluationResult result;
+      for (const CandidateMotion& candidate : r.candidates) {
+        CandidateScore score;
+        score.tube = candidate.tube;
+        score.motion = candidate.name;
+        score.displacement_m = score.cost = candidate.name == "escape-" ? 0.01 : 0.9;
+        score.extra_probability = candidate.name == "up" ? 1.0 : 0.0;
+        if (candidate.name == "escape+") score.status = CandidateScore::Status::kJammed;
+        result.candidates.push_back(score);
+      }
+      result.best = 0;
+      return result;
+    };
+  }
+};
+
+// Tube 1 along x under tube 2.
+TubeScene Cross() {
+  return PerfectScene({StraightLine({-0.15, 0, kRadius}, {0.25, 0, kRadius}),
+                       StraightLine({0.05, -0.2, 3 * kRadius}, {0.05, 0.2, 3 * kRadius})},
+                      kRadius);
+}
+
+PlanResult Plan(const TubeScene& scene, const PlannerConfig& config, FakeEvaluator& evaluator,
+                const FeasibilityFunction& feasible = Always) {
+  Part part;
+  part.length_m = 0.40;
+  return PlanPicks(scene, {}, part, Bin{}, config, evaluator.Function(), feasible);
+}
+
+bool AnyReason(const PlanResult& result, int tube, const std::string& text) {
+  for (const Rejection& rejection : result.rejections) {
+    if (rejection.tube == tube && rejection.reason.find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST_CASE("A free tube is picked upwards without asking the simulator", "[unit]") {
+  FakeEvaluator evaluator;
+  const PlanResult result = Plan(Cross(), PlannerConfig{}, evaluator);
+  CHECK(evaluator.calls == 0);
+  REQUIRE(result.plans.size() == 3);  // plans_per_tube, for the one free tube.
+  for (const PickPlan& plan : result.plans) {
+    CHECK(plan.target == 2);
+    CHECK(plan.motion.name == "up");
+    CHECK_FALSE(plan.used_simulator);
+  }
+  CHECK(result.plans[0].cost <= result.plans[1].cost);
+  CHECK(std::abs(result.plans[0].grasp.at_m - result.plans[1].grasp.at_m) >= 0.0199);
+  CHECK(result.plans[0].grasp.at_m == Approx(0.20));  // The centre of mass.
+}
+
+TEST_CASE("With free tubes excluded the simulator decides, and a jam comes last", "[unit]") {
+  FakeEvaluator evaluator;
+  PlannerConfig config;
+  config.exclude_free = true;
+  config.plans_per_tube = 100;
+  config.max_plans = 100;
+  const PlanResult result = Plan(Cross(), config, evaluator);
+  CHECK(evaluator.calls == 1);
+  REQUIRE(evaluator.request.candidates.size() == 3);
+  REQUIRE(evaluator.request.grasp_at_m.size() == 3);
+  REQUIRE_FALSE(result.plans.empty());
+  CHECK(result.plans.front().target == 1);
+  CHECK(result.plans.front().motion.name == "escape-");
+  CHECK(result.plans.front().used_simulator);
+  CHECK(result.plans.back().motion.name == "escape+");
+  CHECK_THAT(result.plans.back().note, Catch::Contains("jammed"));
+  CHECK(AnyReason(result, 2, "free tubes are excluded"));
+}
+
+TEST_CASE("A short tube comes last but comes", "[unit]") {
+  FakeEvaluator evaluator;
+  const TubeScene scene = PerfectScene({StraightLine({-0.2, 0.1, kRadius}, {0.2, 0.1, kRadius}),
+                                        StraightLine({-0.1, -0.1, 0.05}, {0.1, -0.1, 0.05})},
+                                       kRadius);
+  const PlanResult result = Plan(scene, PlannerConfig{}, evaluator);
+  REQUIRE(result.plans.size() == 6);
+  CHECK(result.plans.front().target == 1);
+  CHECK(result.plans.front().note.empty());
+  CHECK(result.plans.back().target == 2);
+  CHECK_THAT(result.plans.back().note, Catch::Contains("only 50 % of the part's length"));
+}
+
+TEST_CASE("Doubt about a free tube puts a covered one first", "[unit]") {
+  FakeEvaluator evaluator;
+  TubeScene scene = Cross();
+  scene.tubes[1].confidence = 0.1;
+  const PlanResult result = Plan(scene, PlannerConfig{}, evaluator);
+  CHECK(evaluator.calls == 1);
+  REQUIRE_FALSE(result.plans.empty());
+  CHECK(result.plans.front().target == 1);
+  bool doubtful = false;
+  for (const PickPlan& plan : result.plans) doubtful = doubtful || plan.target == 2;
+  CHECK(doubtful);
+}
+
+TEST_CASE("What the arm refuses is left out with its reason, the turned yaw is tried", "[unit]") {
+  FakeEvaluator evaluator;
+  const PlanResult refused =
+      Plan(Cross(), PlannerConfig{}, evaluator,
+           [](const Grasp&, const CandidateMotion&) { return std::string("out of reach"); });
+  CHECK(refused.plans.empty());
+  CHECK(AnyReason(refused, 1, "arm: out of reach"));
+  CHECK(AnyReason(refused, 2, "arm: out of reach"));
+
+  const auto wants = [](const Grasp& grasp, const CandidateMotion&) -> std::optional<std::string> {
+    if ((Bin{}.X_BN.linear() * grasp.X_NG.linear().col(0)).x() < -0.5) return std::nullopt;
+    return "wrist limit";
+  };
+  const PlanResult turned = Plan(Cross(), PlannerConfig{}, evaluator, wants);
+  REQUIRE_FALSE(turned.plans.empty());
+  CHECK(turned.plans[0].grasp.X_NG.linear().col(2).isApprox(-Vector3::UnitZ()));
+}
+
+TEST_CASE("A tube that the gripper cannot get at is named with a reason", "[unit]") {
+  FakeEvaluator evaluator;
+  const double y = 0.29 - kRadius;  // Touches the wall over its whole length.
+  const TubeScene scene =
+      PerfectScene({StraightLine({-0.2, y, kRadius}, {0.2, y, kRadius})}, kRadius);
+  const PlanResult result = Plan(scene, PlannerConfig{}, evaluator);
+  CHECK(result.plans.empty());
+  CHECK(AnyReason(result, 1, "no place where the gripper fits, for example at"));
+  CHECK(AnyReason(result, 1, "from the bin's wall"));
+}
+
+TEST_CASE("plan.json lists ranking, candidates and reasons", "[unit]") {
+  FakeEvaluator evaluator;
+  PlannerConfig config;
+  config.exclude_free = true;
+  const Json json = ToJson(Plan(Cross(), config, evaluator));
+  CHECK(json["schema"] == "tubetwin/plan/1");
+  CHECK(json["ranking"].size() == 3);
+  CHECK(json["ranking"][0]["class"] == "weak");
+  CHECK(json["candidates"].size() == 3);
+  CHECK(json["evaluation"]["schema"] == "tubetwin/scores/1");
+  CHECK(json["evaluation"]["candidates"][1]["status"] == "jammed");
+}
+
+TEST_CASE("Points are thinned to one per cube, without floor and walls", "[unit]") {
+  OrganizedCloud cloud;
+  cloud.p_SP = {{0, 0, 0.05f},     {0.0002f, 0, 0.05f}, {0.1f, 0, 0.05f},
+                {0.1f, 0, 0.001f}, {0.384f, 0, 0.05f},  InvalidPoint()};
+  cloud.width = 6;
+  cloud.height = 1;
+  const std::vector<Vector3> points = ThinPoints({cloud, cloud}, Bin{});
+  REQUIRE(points.size() == 2);
+  CHECK(points[0].isApprox(Vector3(0, 0, 0.05), 1e-6));
+}
+
+}  // namespace
+}  // namespace tubetwin

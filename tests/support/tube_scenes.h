@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "perception/tube_scene.h"
+
+namespace tubetwin {
+
+/// A straight line of nodes at most 10 mm apart.
+inline Polyline StraightLine(const Vector3& from, const Vector3& to) {
+  return Resample({from, to}, 0.01);
+}
+
+/// What a perfect perception would say about these tubes: ids from 1, crossings and classes by the
+/// common rule, everything seen.
+inline TubeScene PerfectScene(const std::vector<Polyline>& lines_N, double radius_m) {
+  TubeScene scene;
+  for (const Polyline& line : lines_N) {
+    PerceivedTube tube;
+    tube.id = static_cast<int>(scene.tubes.size()) + 1;
+    tube.centerline_N = line;
+    tube.radius_m = radius_m;
+    tube.length_m = Length(line);
+    tube.visible_fraction = 1.0;
+    tube.confidence = 1.0;
+    tube.node_visible.assign(line.size(), 1);
+    scene.tubes.push_back(tube);
+  }
+  AssignClasses(scene, radius_m);
+  return scene;
+}
+
+inline Polyline Shifted(const Polyline& line, const Vector3& by) {
+  return Transformed(Translation(by), line);
+}
+
+}  // namespace tubetwin
