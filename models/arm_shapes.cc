@@ -14,10 +14,12 @@ using Kind = Shape::Kind;
 constexpr int kFlange = 7;
 constexpr double kSensorRadius_m = 0.0377;  // ATI Gamma, diameter 75.4 mm
 /// Gripper without its fingers, from the sensor's tool face: a round base, then the chassis that
-/// carries the cranks (their pivots lie 55 mm over the face).
+/// carries the cranks. Their pivots lie 55 and 61 mm over the face; that the chassis ends 70 mm
+/// over it is assumed (closed fingers then reach 93 mm beyond it, more than the bin's walls are
+/// high).
 constexpr double kBaseRadius_m = 0.0375;
 constexpr double kBaseHeight_m = 0.050;
-constexpr double kChassisHeight_m = 0.075;
+constexpr double kChassisHeight_m = 0.070;
 constexpr double kChassisHalfWidth_m = 0.024;    // along the pads' width
 constexpr double kChassisHalfClosing_m = 0.040;  // along the closing direction
 constexpr double kBracketHalf_m = 0.005;

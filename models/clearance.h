@@ -24,6 +24,7 @@ struct CapsuleChain {
 /// construction; const calls are thread safe.
 class ClearanceChecker {
  public:
+  /// `arm` must outlive this; layout and bin are copied.
   ClearanceChecker(const ArmModel& arm, const CellLayout& layout, const Bin& bin);
   ~ClearanceChecker();
 

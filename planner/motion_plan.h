@@ -61,6 +61,7 @@ struct MotionOptions {
 ///     if (const auto* rejection = std::get_if<MotionRejection>(&result)) ...
 class MotionPlanner {
  public:
+  /// `arm` must outlive this; layout and bin are copied.
   MotionPlanner(const ArmModel& arm, const CellLayout& layout, const Bin& bin);
 
   /// Straight line of E with the orientation turning evenly (slerp) on the same path parameter.

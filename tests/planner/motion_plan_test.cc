@@ -200,6 +200,22 @@ TEST_CASE("A line beyond the reach is refused with where", "[unit]") {
   CHECK_FALSE(rejection.reason.empty());
 }
 
+TEST_CASE("A sideways line through a nearly singular pose is refused, a vertical one is not",
+          "[unit]") {
+  // Nearest row, forearm almost upright: about 0.04 there.
+  MotionOptions options;
+  options.manipulability = 0.06;
+  options.opening_m = 0.03;
+  options.finger_clearance_m = 0.001;
+  const RigidTransform from = Down(0.36, -0.25, 0.0215), to = Down(0.36, 0.10, 0.0215);
+  const auto rejection = Rejected(Planner().PlanLine(At(from), to, options));
+  CHECK(rejection.why == Why::kSingular);
+  CHECK_THAT(rejection.reason, Catch::Contains("manipulability"));
+  CHECK(rejection.fraction > 0.0);
+  // A start beyond the bound may be left as long as that does not get worse.
+  Planned(Planner().PlanLine(At(Down(0.36, 0.0, 0.0215)), Down(0.36, 0.0, 0.30), options));
+}
+
 TEST_CASE("A turn beyond joint 6's range names the joint, and either yaw avoids it", "[unit]") {
   JointVector q = At(Down(0.6, 0, 0.4));
   q[5] = Radians(150);
@@ -277,6 +293,12 @@ TEST_CASE("Transfers join every part of the bin with every corner of the tray", 
           const auto there = Planned(
               Planner().PlanTransfer(q, MakeTransform(RotX(kPi) * RotZ(0.3), p_BE), options));
           CheckLimits(there);
+          for (double t = 0; t < there.duration_s(); t += 0.02) {
+            const auto near =
+                Planner().clearance().Check(Sample(there.trajectory(), t).q, options.opening_m);
+            // Between two pieces of the path E moves less than half of the clearance asked.
+            CHECK(near.clearance_m > 0.5 * options.clearance_m);
+          }
           longest_s = std::max(longest_s, there.duration_s());
           CHECK((Planner().PoseOfE(EndOf(there)).translation() - p_BE).norm() < 1e-8);
         }
