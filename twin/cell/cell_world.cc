@@ -163,7 +163,10 @@ void CellWorld::Step() {
 
 ScanGeometry CellWorld::Geometry() const {
   ScanGeometry geometry;
+  // The scanner looks out of its own housing.
+  const int own_housing = mj_name2id(model_.get(), mjOBJ_GEOM, "arm_scanner");
   for (int geom = 0; geom < model_->ngeom; ++geom) {
+    if (geom == own_housing) continue;
     const mjtNum* R = data_->geom_xmat + 9 * geom;
     const mjtNum* size = model_->geom_size + 3 * geom;
     const Vector3 centre(data_->geom_xpos + 3 * geom);
