@@ -1,0 +1,162 @@
+#include <algorithm>
+
+#include "planner/cycle_context.h"
+#include "planner/placement.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kRetreat_m = 0.15;
+constexpr double kReleaseExtra_m = 0.030;  ///< Opening beyond the tube when letting go.
+constexpr double kRestAfterTilt_s = 1.0;
+constexpr double kWeakTorque_Nm = 0.02;    ///< Below, the torque axis is arbitrary.
+constexpr double kPlaceGap_m = 0.003;      ///< E stops this far above touching the tray.
+constexpr double kGuardedPlace_m = 0.050;  ///< Two tubes already laid may be met from here on.
+constexpr double kTruthDelay_s = 1.0;      ///< Placed counts one second after release.
+
+void Open(CycleContext& c) {
+  GripperCommand open;
+  open.opening_m = std::min(GripperSpec().stroke_m, 2 * c.setup.part.radius_m + kReleaseExtra_m);
+  open.speed_m_s = c.setup.cycle.grip_speed_m_s;
+  open.force_N = c.setup.cycle.grip_force_N;
+  MoveGripper(c.cell, open);
+  c.mover.SetOpening(open.opening_m);
+  c.cell.arm.SetPayload(0.0, Vector3::Zero());
+}
+
+void Retreat(CycleContext& c) {
+  RigidTransform up = c.mover.X_BE();
+  up.translation().z() += kRetreat_m;
+  c.mover.Line(up, c.setup.cycle.approach_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+}
+
+/// Level -> tilted -> level about an axis through E, then how many hang.
+HeldOutcome TiltAndWeigh(CycleContext& c, const Vector3& axis_B, double angle_deg) {
+  {
+    const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
+    const double speed = Radians(c.setup.resolution.speed_deg_s);
+    const Vector3 rotation_B = Radians(angle_deg) * axis_B;
+    c.mover.Tilt(rotation_B, speed);
+    Wait(c.cell, kRestAfterTilt_s);
+    c.mover.Tilt(-rotation_B, speed);
+  }
+  return c.Weigh(c.setup.cycle.settle_s).outcome;
+}
+
+HeldOutcome TiltSequence(CycleContext& c, const Vector3& axis_B,
+                         const std::vector<double>& angles_deg) {
+  HeldOutcome held = HeldOutcome::kSeveral;
+  for (const double angle_deg : angles_deg) {
+    c.observer.OnStep("several held: tilting by " + std::to_string(static_cast<int>(angle_deg)) +
+                      " degrees");
+    held = TiltAndWeigh(c, axis_B, angle_deg);
+    if (held != HeldOutcome::kSeveral) break;
+  }
+  return held;
+}
+
+/// Down until something is felt, a short rest, up again: extras that lie on the pile let go.
+HeldOutcome LowerAndRelift(CycleContext& c) {
+  const RigidTransform top = c.mover.X_BE();
+  {
+    const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
+    RigidTransform down = top;
+    down.translation().z() = c.cell.bin.X_BN.translation().z() + 0.10;
+    c.mover.Line(down, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+    Wait(c.cell, 0.3);
+    c.mover.Line(top, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+  }
+  return c.Weigh(c.setup.cycle.settle_s).outcome;
+}
+
+}  // namespace
+
+HeldOutcome Resolve(CycleContext& c, const Vector3& load_torque_K) {
+  {
+    const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
+    RigidTransform station = c.mover.X_BE();
+    station.translation() = c.cell.layout.p_BTilt;
+    c.mover.Line(station, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+  }
+  // The load torque's horizontal axis: turning about it in the positive sense lets the heavy side
+  // go down.
+  Vector3 axis_B = c.mover.X_BE().linear() * load_torque_K;
+  axis_B.z() = 0.0;
+  axis_B = axis_B.norm() > kWeakTorque_Nm ? axis_B.normalized() : Vector3(Vector3::UnitX());
+  const double angle = c.setup.resolution.angle_deg;
+  switch (ResolutionStrategyFromName(c.setup.resolution.strategy)) {
+    case ResolutionStrategy::kNone:
+      return HeldOutcome::kSeveral;
+    case ResolutionStrategy::kPlus45:
+      return TiltSequence(c, axis_B, {angle});
+    case ResolutionStrategy::kPlus45Minus45:
+      return TiltSequence(c, axis_B, {angle, -angle});
+    case ResolutionStrategy::kPerpendicular:
+      return TiltSequence(c, Vector3(-axis_B.y(), axis_B.x(), 0.0), {angle, -angle});
+    case ResolutionStrategy::kPutback:
+      c.observer.OnStep("several held: lowering and lifting again");
+      return LowerAndRelift(c);
+  }
+  return HeldOutcome::kSeveral;
+}
+
+void PutBack(CycleContext& c) {
+  const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
+  c.observer.OnStep("putting back");
+  RigidTransform down = c.mover.X_BE();
+  const double floor_B = c.cell.bin.X_BN.translation().z();
+  down.translation().z() = floor_B + c.cell.bin.wall_m() + 0.10;
+  if (down.translation().z() < c.mover.X_BE().translation().z()) {
+    c.mover.Line(down, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+  }
+  down.translation().z() = floor_B + 0.05;
+  if (down.translation().z() < c.mover.X_BE().translation().z()) {
+    // Hanging tubes touch first: what is felt as the load going down ends the descent.
+    c.mover.GuardedLine(down, 0.05, c.setup.cycle.guard_force_N);
+  }
+  Open(c);
+  Wait(c.cell, 0.5);
+  Retreat(c);
+}
+
+AttemptOutcome Place(CycleContext& c, const Polyline& line_E) {
+  const CycleConfig& speeds = c.setup.cycle;
+  // Both senses of the tube's direction are equal: the one that turns joint 6 less.
+  const auto placement = [&](double yaw_near_rad) {
+    return PlanPlacement(c.cell.layout, line_E, c.setup.part.radius_m, c.placed, yaw_near_rad);
+  };
+  const double yaw = ToolYaw(c.mover.X_BE().linear());
+  PlacementPose pose = placement(yaw);
+  const PlacementPose turned = placement(yaw + kPi);
+  if (c.mover.TurnNeeded(turned.X_BE) < c.mover.TurnNeeded(pose.X_BE)) pose = turned;
+  RigidTransform above = pose.X_BE;
+  above.translation().z() += 0.12;
+  {
+    const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
+    c.observer.OnStep("carrying to slot " +
+                      std::to_string(c.placed % SlotCount(c.cell.layout) + 1));
+    c.mover.Transfer(above, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
+  }
+  if (c.Weigh(0.3).outcome == HeldOutcome::kNone) {
+    c.report.reason = "nothing hangs in the fingers over the tray";
+    return AttemptOutcome::kDropped;
+  }
+  const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
+  c.observer.OnStep("laying down");
+  RigidTransform down = pose.X_BE;
+  down.translation().z() += kGuardedPlace_m;
+  c.mover.Line(down, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
+  down.translation().z() = pose.X_BE.translation().z() + kPlaceGap_m;
+  // Another tube may lie where this one comes to rest: then it is laid upon it.
+  c.mover.GuardedLine(down, 2.0 * speeds.guarded_speed_m_s, 0.5 * speeds.guard_force_N);
+  Open(c);
+  const TimeNs released = c.cell.clock.Now();
+  Retreat(c);
+  const double since_s = Seconds(c.cell.clock.Now() - released);
+  if (since_s < kTruthDelay_s) Wait(c.cell, kTruthDelay_s - since_s);
+  c.report.slot_centre_T = pose.slot_centre_T;
+  ++c.placed;
+  return AttemptOutcome::kPlaced;
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "planner/mover.h"
+#include "planner/pick_cycle.h"
+
+namespace tubetwin {
+
+/// Wall clock of the pipeline's own computing, seconds. For reports only: no decision reads it.
+inline double ComputeClock_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// What the steps of one round share. One per RunPickCycle; all steps run on the caller's thread.
+struct CycleContext {
+  Cell& cell;
+  const PickCycleSetup& setup;
+  CycleObserver& observer;
+  Mover mover;
+  AttemptReport report;  ///< Of the running attempt.
+  Wrench reference_K;    ///< Tare with empty fingers, tool vertical.
+  TimeNs attempt_began{0};
+  int placed = 0;
+
+  /// Adds the simulated time that passes during its life to one class of the report.
+  class Timed {
+   public:
+    Timed(CycleContext& context, double AttemptReport::SimTime::*which)
+        : context_(context), which_(which), began_(context.cell.clock.Now()) {}
+    ~Timed() { context_.report.sim_s.*which_ += Seconds(context_.cell.clock.Now() - began_); }
+    Timed(const Timed&) = delete;
+    Timed& operator=(const Timed&) = delete;
+
+   private:
+    CycleContext& context_;
+    double AttemptReport::SimTime::*which_;
+    TimeNs began_;
+  };
+
+  /// Waits, averages and compares with the reference. Tool vertical and at rest.
+  Detection Weigh(double wait_s) {
+    const Timed timed(*this, &AttemptReport::SimTime::weigh);
+    Wait(cell, wait_s);
+    const Wrench now_K = AverageWrench(cell, setup.cycle.weigh_window_s);
+    Detection out = DetectHeld(reference_K, now_K, setup.part.mass_kg,
+                               setup.cycle.tolerance_share * setup.part.mass_kg * kGravity);
+    out.at_s = Seconds(cell.clock.Now() - attempt_began);
+    return out;
+  }
+};
+
+/// Looking into the bin: which views to take again, the clouds, and the scene they give.
+class Looker {
+ public:
+  explicit Looker(CycleContext& context);
+
+  /// Everything may have moved: the next Look goes to every view.
+  void MarkAll();
+  /// Only what touches this tube may have moved: views that see it or what it touches.
+  void MarkAround(int tube_id);
+  /// Moves to the marked views, scans, models. False positives of motion cost time only. Throws
+  /// Error(kDevice) when the scanner fails; MoveFailure when a view cannot be reached.
+  const TubeScene& Look();
+  bool all_fresh() const;  ///< Every view of the last Look was taken by it.
+  const TubeScene& scene() const { return scene_; }
+  const std::vector<OrganizedCloud>& views() const { return views_; }
+
+ private:
+  bool Sees(std::size_t view, const Polyline& line_N) const;
+  CycleContext& context_;
+  std::vector<RigidTransform> poses_BS_;
+  std::vector<OrganizedCloud> views_;
+  std::vector<bool> marked_, taken_last_;
+  TubeScene scene_;
+};
+
+/// Tries to shake off all but the held tube; leaves the arm at the tilt station, level. The outcome
+/// is how many hang then.
+HeldOutcome Resolve(CycleContext& context, const Vector3& load_torque_K);
+
+/// Lowers what hangs in the fingers into the bin until it is felt or the fingers are near the
+/// floor, opens and retreats.
+void PutBack(CycleContext& context);
+
+/// Lays the held tube into the next slot. `line_E`: its centerline relative to E. The outcome is
+/// kPlaced, or kDropped when nothing hangs in the fingers over the tray.
+AttemptOutcome Place(CycleContext& context, const Polyline& line_E);
+
+}  // namespace tubetwin

@@ -1,0 +1,72 @@
+#include "planner/cycle_report.h"
+
+#include "hw_bridge/base/error.h"
+
+namespace tubetwin {
+
+const char* ToString(ResolutionStrategy strategy) {
+  switch (strategy) {
+    case ResolutionStrategy::kNone:
+      return "none";
+    case ResolutionStrategy::kPlus45:
+      return "plus45";
+    case ResolutionStrategy::kPlus45Minus45:
+      return "plus45_minus45";
+    case ResolutionStrategy::kPerpendicular:
+      return "perpendicular";
+    case ResolutionStrategy::kPutback:
+      return "putback";
+  }
+  return "none";
+}
+
+const std::vector<std::string>& ResolutionStrategyNames() {
+  static const std::vector<std::string> names = {"none", "plus45", "plus45_minus45",
+                                                 "perpendicular", "putback"};
+  return names;
+}
+
+ResolutionStrategy ResolutionStrategyFromName(const std::string& name) {
+  for (const auto strategy :
+       {ResolutionStrategy::kNone, ResolutionStrategy::kPlus45, ResolutionStrategy::kPlus45Minus45,
+        ResolutionStrategy::kPerpendicular, ResolutionStrategy::kPutback}) {
+    if (name == ToString(strategy)) return strategy;
+  }
+  throw LogicError("no resolution strategy is called '" + name + "'");
+}
+
+const char* ToString(AttemptOutcome outcome) {
+  switch (outcome) {
+    case AttemptOutcome::kPlaced:
+      return "placed";
+    case AttemptOutcome::kPutBack:
+      return "put_back";
+    case AttemptOutcome::kNothingHeld:
+      return "nothing_held";
+    case AttemptOutcome::kDropped:
+      return "dropped";
+    case AttemptOutcome::kNoPlan:
+      return "no_plan";
+    case AttemptOutcome::kFault:
+      return "fault";
+  }
+  return "fault";
+}
+
+const char* ToString(RoundEnd end) {
+  switch (end) {
+    case RoundEnd::kEmpty:
+      return "empty";
+    case RoundEnd::kNoPlan:
+      return "no_plan";
+    case RoundEnd::kAttemptLimit:
+      return "attempt_limit";
+    case RoundEnd::kFault:
+      return "fault";
+    case RoundEnd::kInterrupted:
+      return "interrupted";
+  }
+  return "fault";
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,139 @@
+#include "planner/mover.h"
+
+#include <cmath>
+
+namespace tubetwin {
+namespace {
+
+constexpr double kPushed_rad = 0.0005;  ///< Far above the servo's own standing error.
+constexpr double kSettle_s = 0.05;  ///< After a motion, before the next: the servo's lag dies out.
+
+}  // namespace
+
+Mover::Mover(Cell& cell)
+    : cell_(cell), planner_(cell.arm_model, cell.layout, cell.bin), q_(cell.arm.State().q) {}
+
+RigidTransform Mover::X_BE() const { return planner_.PoseOfE(q_); }
+
+JointVector Mover::q() const { return q_; }
+
+JointVector Mover::Start() {
+  // Something may have pushed the arm off where the last motion ended: go on from where it is.
+  const JointVector measured = cell_.arm.State().q;
+  if ((measured - q_).cwiseAbs().maxCoeff() > kPushed_rad) q_ = measured;
+  return q_;
+}
+
+MotionOptions Mover::Options(double speed_m_s, double acceleration_m_s2) const {
+  MotionOptions options;
+  options.speed_m_s = speed_m_s;
+  options.acceleration_m_s2 = acceleration_m_s2;
+  options.opening_m = opening_m_;
+  options.finger_clearance_m = kFingerClearance_m;
+  return options;
+}
+
+WaitOutcome Mover::Run(const MotionResult& planned, const char* what) {
+  if (const auto* rejection = std::get_if<MotionRejection>(&planned)) {
+    throw MoveFailure(MoveFailure::Kind::kRejected, std::string(what) + ": " + rejection->reason);
+  }
+  const CheckedTrajectory& trajectory = std::get<CheckedTrajectory>(planned);
+  const WaitOutcome outcome = RunTrajectory(cell_, trajectory);
+  if (outcome.status != WaitOutcome::Status::kDone) {
+    throw MoveFailure(MoveFailure::Kind::kFault, std::string(what) + ": " + outcome.reason);
+  }
+  q_ = EndOf(trajectory);
+  Wait(cell_, kSettle_s);
+  return outcome;
+}
+
+void Mover::Transfer(const RigidTransform& X_BE, double speed_m_s, double acceleration_m_s2,
+                     bool either_yaw) {
+  MotionOptions options = Options(speed_m_s, acceleration_m_s2);
+  options.either_yaw = either_yaw;
+  Run(planner_.PlanTransfer(Start(), X_BE, options), "transfer");
+}
+
+void Mover::Joint(const RigidTransform& X_BE, bool either_yaw) {
+  MotionOptions options;
+  options.opening_m = opening_m_;
+  options.either_yaw = either_yaw;
+  const auto q_goal = planner_.Reach(X_BE, q_[5]);
+  if (q_goal) {
+    const MotionResult direct = planner_.PlanJoint(Start(), *q_goal, options);
+    if (std::holds_alternative<CheckedTrajectory>(direct)) {
+      Run(direct, "joint move");
+      return;
+    }
+  }
+  Run(planner_.PlanTransfer(Start(), X_BE, options), "transfer");
+}
+
+void Mover::Line(const RigidTransform& X_BE, double speed_m_s, double acceleration_m_s2,
+                 double finger_clearance_m) {
+  MotionOptions options = Options(speed_m_s, acceleration_m_s2);
+  options.finger_clearance_m = finger_clearance_m;
+  Run(planner_.PlanLine(Start(), X_BE, options), "line");
+}
+
+WaitOutcome Mover::GuardedLine(const RigidTransform& X_BE, double speed_m_s, double force_limit_N) {
+  const MotionResult planned = planner_.PlanLine(Start(), X_BE, Options(speed_m_s, 0.5));
+  if (const auto* rejection = std::get_if<MotionRejection>(&planned)) {
+    throw MoveFailure(MoveFailure::Kind::kRejected, "guarded line: " + rejection->reason);
+  }
+  const CheckedTrajectory& trajectory = std::get<CheckedTrajectory>(planned);
+  const WaitOutcome outcome = RunGuarded(cell_, trajectory, force_limit_N);
+  if (outcome.status == WaitOutcome::Status::kDone) {
+    q_ = EndOf(trajectory);
+  } else if (outcome.status == WaitOutcome::Status::kContact) {
+    Wait(cell_, kSettle_s);
+    q_ = cell_.arm.State().q;
+  } else {
+    throw MoveFailure(MoveFailure::Kind::kFault, "guarded line: " + outcome.reason);
+  }
+  return outcome;
+}
+
+void Mover::Legs(const std::vector<Vector3>& p_BE, double speed_m_s, double acceleration_m_s2) {
+  if (p_BE.empty()) return;
+  std::vector<RigidTransform> poses;
+  for (const Vector3& p : p_BE) poses.push_back(MakeTransform(X_BE().linear(), p));
+  Run(planner_.PlanPolyline(Start(), poses, Options(speed_m_s, acceleration_m_s2)), "lift");
+}
+
+void Mover::Tilt(const Vector3& rotation_B, double speed_rad_s) {
+  MotionOptions options;
+  options.turn_speed_rad_s = speed_rad_s;
+  options.turn_acceleration_rad_s2 = speed_rad_s / 0.3;  // Ramps of 0.3 s.
+  options.opening_m = opening_m_;
+  Run(planner_.PlanTilt(Start(), rotation_B, options), "tilt");
+}
+
+double Mover::TurnNeeded(const RigidTransform& X_BE) const {
+  const auto q = planner_.Reach(X_BE, 0.0);
+  return q ? std::abs((*q)[5]) : 10.0;
+}
+
+std::optional<std::string> PickProblem(const MotionPlanner& planner, const Bin& bin,
+                                       const Grasp& grasp, const CandidateMotion& motion,
+                                       double approach_m) {
+  MotionOptions options;
+  options.opening_m = grasp.opening_m;
+  options.finger_clearance_m = kFingerClearance_m;
+  const RigidTransform X_BG = bin.X_BN * grasp.X_NG;
+  RigidTransform above = X_BG;
+  above.translation() -= approach_m * X_BG.linear().col(2);
+  const auto q_above = planner.Reach(above);
+  if (!q_above) return "the arm does not reach the approach";
+  std::vector<RigidTransform> poses{X_BG};
+  for (std::size_t i = 1; i < motion.waypoints_N.size(); ++i) {
+    RigidTransform X_BE = X_BG;
+    X_BE.translation() += bin.X_BN.linear() * motion.waypoints_N[i];
+    poses.push_back(X_BE);
+  }
+  const MotionResult chain = planner.PlanPolyline(*q_above, poses, options);
+  if (const auto* rejection = std::get_if<MotionRejection>(&chain)) return rejection->reason;
+  return std::nullopt;
+}
+
+}  // namespace tubetwin

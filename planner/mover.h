@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/cell/cell.h"
+#include "planner/motion_plan.h"
+#include "planner/plan.h"
+
+namespace tubetwin {
+
+/// A motion that could not be planned or did not end as asked. Caught by the pick cycle, which
+/// turns it into an outcome of the attempt; never leaves the cycle.
+class MoveFailure : public std::runtime_error {
+ public:
+  enum class Kind { kRejected, kFault } kind;
+  MoveFailure(Kind k, const std::string& what) : std::runtime_error(what), kind(k) {}
+};
+
+/// Clearance of the fingers to the bin on the way to and from a grasp: pads end 2 mm over the
+/// floor.
+inline constexpr double kFingerClearance_m = 0.001;
+
+/// Plans motions from where the arm last ended and runs them. Every motion is checked before it
+/// starts; one that is rejected moves nothing. Poses are of E in B. Functions throw MoveFailure.
+class Mover {
+ public:
+  explicit Mover(Cell& cell);
+
+  RigidTransform X_BE() const;  ///< Where E is, from the joints.
+  JointVector q() const;        ///< Where the next motion starts.
+
+  /// Straight up to carry height, over, straight down. `either_yaw`: the goal turned by 180 degrees
+  /// will do as well.
+  void Transfer(const RigidTransform& X_BE, double speed_m_s, double acceleration_m_s2,
+                bool either_yaw = false);
+  /// Joint motion to a nearby pose at the same height; over carry height where that is not free.
+  void Joint(const RigidTransform& X_BE, bool either_yaw = false);
+  void Line(const RigidTransform& X_BE, double speed_m_s, double acceleration_m_s2,
+            double finger_clearance_m = kFingerClearance_m);
+  /// Straight line that ends at contact. What it felt is the outcome.
+  WaitOutcome GuardedLine(const RigidTransform& X_BE, double speed_m_s, double force_limit_N);
+  /// Straight legs through points, orientation kept, stopping at corners.
+  void Legs(const std::vector<Vector3>& p_BE, double speed_m_s, double acceleration_m_s2);
+  /// About E, which stays where it is. Rotation vector in B, radians.
+  void Tilt(const Vector3& rotation_B, double speed_rad_s);
+
+  /// How far joint 6 is from its middle with E at this pose, radians; large when out of reach.
+  double TurnNeeded(const RigidTransform& X_BE) const;
+
+  const MotionPlanner& planner() const { return planner_; }
+
+  /// Opening of the pads from now on, for the clearance of the fingers.
+  void SetOpening(double opening_m) { opening_m_ = opening_m; }
+
+ private:
+  JointVector Start();
+  MotionOptions Options(double speed_m_s, double acceleration_m_s2) const;
+  WaitOutcome Run(const MotionResult& planned, const char* what);
+
+  Cell& cell_;
+  MotionPlanner planner_;
+  double opening_m_ = 0.085;
+  JointVector q_;  ///< End of the last motion; the measured joints where one was stopped.
+};
+
+/// Whether the arm can run a grasp and the motion after it, from `approach_m` above the grasp on:
+/// nothing, or why not. Nothing moves.
+std::optional<std::string> PickProblem(const MotionPlanner& planner, const Bin& bin,
+                                       const Grasp& grasp, const CandidateMotion& motion,
+                                       double approach_m);
+
+}  // namespace tubetwin

@@ -1,0 +1,339 @@
+#include "planner/pick_cycle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hw_bridge/base/error.h"
+#include "planner/choose.h"
+#include "planner/cycle_context.h"
+#include "planner/points.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kSameGrasp_m = 0.015;       ///< A grasp this near a failed one is the same again.
+constexpr double kNothingOpening_m = 0.004;  ///< Closed fingers: nothing between them.
+constexpr double kContactSlack_m = 0.004;    ///< Contact this near the grasp still closes.
+constexpr int kMostRecoveries = 5;           ///< Rejected motions in one round.
+
+/// One round: the readable list of steps is RunPickCycle at the end of this file.
+class Round {
+ public:
+  Round(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer)
+      : c_{cell, setup, observer, Mover(cell), {}, {}, {}, 0}, looker_(c_) {}
+
+  void BeginAttempt() {
+    c_.report = AttemptReport();
+    c_.report.attempt = attempt_;
+    c_.report.strategy = ResolutionStrategyFromName(c_.setup.resolution.strategy);
+    c_.attempt_began = c_.cell.clock.Now();
+  }
+
+  void EndAttempt(AttemptOutcome outcome, const std::string& reason) {
+    c_.report.outcome = outcome;
+    if (!reason.empty()) c_.report.reason = reason;
+    auto& compute = c_.report.compute_s;
+    compute.total = compute.modelling + compute.planning + compute.evaluator;
+    c_.observer.OnAttemptEnd(c_.report);
+    ++attempts_;
+    if (outcome == AttemptOutcome::kPlaced) {
+      attempt_ = 1;
+      failed_.clear();
+      looker_.MarkAround(c_.report.plan->target);
+    } else {
+      ++attempt_;
+      looker_.MarkAll();
+    }
+  }
+
+  /// Looks until it is sure: an empty-looking bin is looked at whole before it is called empty.
+  const TubeScene& LookSurely() {
+    c_.observer.OnStep("scanning");
+    const TubeScene* scene = &looker_.Look();
+    if (scene->tubes.empty() && !looker_.all_fresh()) {
+      looker_.MarkAll();
+      scene = &looker_.Look();
+    }
+    c_.report.tubes_in_bin = static_cast<int>(scene->tubes.size());
+    if (first_count_ < 0) first_count_ = c_.report.tubes_in_bin;
+    return *scene;
+  }
+
+  /// The best plan that has not failed and that the arm can run, or none.
+  std::optional<PickPlan> Decide(const TubeScene& scene) {
+    c_.observer.OnStep("planning");
+    const double began = ComputeClock_s();
+    const PlanResult result = PlanPicks(
+        scene, ThinPoints(looker_.views(), c_.cell.bin), c_.setup.part, c_.cell.bin,
+        c_.setup.planner, c_.setup.evaluate,
+        [this](const Grasp& grasp, const CandidateMotion& motion) {
+          return PickProblem(c_.mover.planner(), c_.cell.bin, grasp, motion,
+                             c_.setup.cycle.approach_m);
+        },
+        c_.setup.seed);
+    c_.report.rejections = result.rejections;
+    // What failed is not tried again before everything else was.
+    std::optional<PickPlan> chosen;
+    for (const PickPlan& plan : result.plans) {
+      if (FailedBefore(plan)) continue;
+      chosen = plan;
+      break;
+    }
+    if (!chosen && !result.plans.empty()) chosen = result.plans.front();
+    c_.report.compute_s.evaluator += result.evaluator_s;
+    c_.report.compute_s.planning += ComputeClock_s() - began - result.evaluator_s;
+    c_.observer.OnScene(scene, chosen ? &*chosen : nullptr);
+    return chosen;
+  }
+
+  /// Approach, guarded descent, closing. Ends with the fingers closed, or says why not.
+  bool GraspTube(const PickPlan& plan) {
+    const CycleConfig& speeds = c_.setup.cycle;
+    const CycleContext::Timed timed(c_, &AttemptReport::SimTime::move);
+    c_.observer.OnStep("approaching tube " + std::to_string(plan.target) + " (" +
+                       ToString(plan.target_class) + "), motion " + plan.motion.name);
+    SetFingers(plan.grasp.opening_m, 0);
+    const RigidTransform X_BG = c_.cell.bin.X_BN * plan.grasp.X_NG;
+    const Vector3 back_B = -X_BG.linear().col(2);
+    RigidTransform above = X_BG;
+    above.translation() += speeds.approach_m * back_B;
+    c_.mover.Transfer(above, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
+    {
+      const CycleContext::Timed weighing(c_, &AttemptReport::SimTime::settle);
+      Wait(c_.cell, 0.3);
+      c_.reference_K = AverageWrench(c_.cell, speeds.weigh_window_s);
+      c_.observer.OnReference(c_.reference_K);
+    }
+    RigidTransform near = X_BG;
+    near.translation() += speeds.guarded_m * back_B;
+    c_.mover.Line(near, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
+    const WaitOutcome descent =
+        c_.mover.GuardedLine(X_BG, speeds.guarded_speed_m_s, speeds.guard_force_N);
+    const double short_m = (c_.mover.X_BE().translation() - X_BG.translation()).norm();
+    if (descent.status == WaitOutcome::Status::kContact && short_m > kContactSlack_m) {
+      c_.report.reason = "met something " + std::to_string(static_cast<int>(1e3 * short_m)) +
+                         " mm above the grasp";
+      return false;
+    }
+    c_.observer.OnStep("closing");
+    const GripperState held = SetFingers(0.0, 1);
+    if (held.opening_m < kNothingOpening_m) {
+      c_.report.reason = "the fingers closed on nothing";
+      return false;
+    }
+    return true;
+  }
+
+  /// 3 cm lift, weigh, the rest of the motion, weigh for good.
+  Detection LiftAndWeigh(const PickPlan& plan) {
+    const Vector3 p_BG = c_.mover.X_BE().translation();
+    c_.cell.arm.SetPayload(c_.setup.part.mass_kg, c_.cell.layout.X_FE.translation());
+    std::vector<Vector3> first, rest;
+    SplitMotion(plan.motion, p_BG, first, rest);
+    const double acceleration = c_.setup.cycle.transfer_acceleration_m_s2;
+    {
+      const CycleContext::Timed timed(c_, &AttemptReport::SimTime::move);
+      c_.observer.OnStep("lifting 3 cm");
+      c_.mover.Legs(first, plan.motion.speed_m_s, acceleration);
+    }
+    c_.report.first_weighing = c_.Weigh(0.1);
+    {
+      const CycleContext::Timed timed(c_, &AttemptReport::SimTime::move);
+      c_.observer.OnStep("lifting (" + plan.motion.name + ")");
+      c_.mover.Legs(rest, plan.motion.speed_m_s, acceleration);
+    }
+    c_.observer.OnStep("weighing");
+    const Detection detection = c_.Weigh(c_.setup.cycle.settle_s);
+    c_.report.detection = detection;
+    c_.observer.OnDetection(detection);
+    return detection;
+  }
+
+  AttemptOutcome FinishHeld(const PickPlan& plan, const Polyline& line_E,
+                            const Detection& detection) {
+    HeldOutcome held = detection.outcome;
+    if (held == HeldOutcome::kSeveral) {
+      c_.report.resolution_used = c_.report.strategy != ResolutionStrategy::kNone;
+      held = Resolve(c_, detection.torque_Nm);
+      if (c_.report.resolution_used) c_.report.resolution_outcome = held;
+    }
+    if (held == HeldOutcome::kSeveral) {
+      Remember(plan);
+      PutBack(c_);
+      c_.report.reason = "several tubes hung in the fingers";
+      return AttemptOutcome::kPutBack;
+    }
+    if (held == HeldOutcome::kNone) {
+      Remember(plan);
+      const bool lost = c_.cell.gripper.State().opening_m < kNothingOpening_m;
+      PutBack(c_);
+      c_.report.reason = lost ? "the tube slipped out of the fingers" : "no weight in the fingers";
+      return AttemptOutcome::kNothingHeld;
+    }
+    const AttemptOutcome outcome = Place(c_, line_E);
+    if (outcome != AttemptOutcome::kPlaced) SetFingers(GripperSpec().stroke_m, 0);
+    return outcome;
+  }
+
+  /// A grasp that did not take: open, up, remember.
+  void GiveUpGrasp(const PickPlan& plan) {
+    const CycleContext::Timed timed(c_, &AttemptReport::SimTime::move);
+    Remember(plan);
+    SetFingers(plan.grasp.opening_m, 0);
+    RigidTransform up = c_.mover.X_BE();
+    up.translation().z() += 0.15;
+    c_.mover.Line(up, c_.setup.cycle.approach_speed_m_s, c_.setup.cycle.transfer_acceleration_m_s2);
+  }
+
+  Polyline HeldLine(const TubeScene& scene, const PickPlan& plan) const {
+    for (const PerceivedTube& tube : scene.tubes) {
+      if (tube.id == plan.target) {
+        return Transformed(plan.grasp.X_NG.inverse(), tube.centerline_N);
+      }
+    }
+    throw LogicError("the plan's target is not in the scene");
+  }
+
+  bool AttemptsLeft() const {
+    return first_count_ < 0 || attempts_ < c_.setup.cycle.attempts_per_tube * first_count_ + 10;
+  }
+
+  /// A motion was rejected in the middle of an attempt: what hangs in the fingers goes back into
+  /// the bin and the attempt counts as failed. False when even that cannot be done.
+  bool Recover(const std::string& reason) {
+    if (++recoveries_ > kMostRecoveries) return false;
+    try {
+      if (c_.report.plan) Remember(*c_.report.plan);
+      PutBack(c_);
+    } catch (const MoveFailure&) {
+      return false;
+    }
+    EndAttempt(AttemptOutcome::kPutBack, reason);
+    return true;
+  }
+
+  RoundReport EndOfRound(RoundEnd end, const std::string& reason) {
+    RoundReport out;
+    out.end = end;
+    out.reason = reason;
+    out.placed_believed = c_.placed;
+    out.unseen_m3 = looker_.scene().unseen_m3;
+    return out;
+  }
+
+  /// Every tube that is left, with the first reason against it.
+  std::string WhyNoPlan() const {
+    std::string out;
+    for (const PerceivedTube& tube : looker_.scene().tubes) {
+      out += (out.empty() ? "tube " : "; tube ") + std::to_string(tube.id) + ": ";
+      const auto found = std::find_if(c_.report.rejections.begin(), c_.report.rejections.end(),
+                                      [&](const Rejection& r) { return r.tube == tube.id; });
+      out += found == c_.report.rejections.end() ? "no candidate" : found->reason;
+    }
+    return out;
+  }
+
+  CycleContext& context() { return c_; }
+  Looker& looker() { return looker_; }
+
+ private:
+  GripperState SetFingers(double opening_m, int close) {
+    GripperCommand command;
+    command.opening_m = close ? 0.0 : opening_m;
+    command.speed_m_s = c_.setup.cycle.grip_speed_m_s;
+    command.force_N = c_.setup.cycle.grip_force_N;
+    const GripperState state = MoveGripper(c_.cell, command);
+    c_.mover.SetOpening(close ? state.opening_m : opening_m);
+    return state;
+  }
+
+  bool FailedBefore(const PickPlan& plan) const {
+    return std::any_of(failed_.begin(), failed_.end(), [&](const auto& failed) {
+      return failed.first == plan.motion.name &&
+             (failed.second - plan.grasp.X_NG.translation()).norm() < kSameGrasp_m;
+    });
+  }
+
+  void Remember(const PickPlan& plan) {
+    failed_.emplace_back(plan.motion.name, plan.grasp.X_NG.translation());
+  }
+
+  /// Positions of E along the motion, cut where the first 3 cm end.
+  void SplitMotion(const CandidateMotion& motion, const Vector3& p_BG, std::vector<Vector3>& first,
+                   std::vector<Vector3>& rest) const {
+    const Matrix3 R_BN = c_.cell.bin.X_BN.linear();
+    const double cut_m = c_.setup.cycle.first_lift_m;
+    double gone_m = 0.0;
+    for (std::size_t i = 1; i < motion.waypoints_N.size(); ++i) {
+      const Vector3 a = motion.waypoints_N[i - 1], b = motion.waypoints_N[i];
+      const double leg_m = (b - a).norm();
+      if (leg_m < 1e-9) continue;
+      if (gone_m < cut_m && gone_m + leg_m > cut_m) {
+        first.push_back(p_BG + R_BN * (a + (cut_m - gone_m) / leg_m * (b - a)));
+        rest.push_back(p_BG + R_BN * b);
+      } else {
+        (gone_m + leg_m <= cut_m ? first : rest).push_back(p_BG + R_BN * b);
+      }
+      gone_m += leg_m;
+    }
+  }
+
+  CycleContext c_;
+  Looker looker_;
+  std::vector<std::pair<std::string, Vector3>> failed_;  ///< Since the last placed tube.
+  int attempt_ = 1;
+  int attempts_ = 0;
+  int first_count_ = -1;
+  int recoveries_ = 0;
+};
+
+/// One attempt from the look to the end. What ends the round is the answer, if anything does.
+std::optional<RoundReport> Attempt(Round& round) {
+  CycleContext& c = round.context();
+  round.BeginAttempt();
+  const TubeScene& scene = round.LookSurely();
+  if (scene.tubes.empty()) return round.EndOfRound(RoundEnd::kEmpty, "no tube is seen");
+  const std::optional<PickPlan> plan = round.Decide(scene);
+  if (!plan) {
+    if (!round.looker().all_fresh()) {
+      round.looker().MarkAll();  // Look everywhere before giving up.
+      return std::nullopt;
+    }
+    round.EndAttempt(AttemptOutcome::kNoPlan, "no plan for any tube");
+    return round.EndOfRound(RoundEnd::kNoPlan, round.WhyNoPlan());
+  }
+  c.report.plan = *plan;
+  const Polyline line_E = round.HeldLine(scene, *plan);
+  if (!round.GraspTube(*plan)) {
+    round.GiveUpGrasp(*plan);
+    round.EndAttempt(AttemptOutcome::kNothingHeld, "");
+    return std::nullopt;
+  }
+  const Detection detection = round.LiftAndWeigh(*plan);
+  round.EndAttempt(round.FinishHeld(*plan, line_E, detection), "");
+  return std::nullopt;
+}
+
+}  // namespace
+
+RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer) {
+  Round round(cell, setup, observer);
+  for (;;) {
+    if (setup.stop_requested && setup.stop_requested()) {
+      return round.EndOfRound(RoundEnd::kInterrupted, "asked to stop");
+    }
+    if (!round.AttemptsLeft()) {
+      return round.EndOfRound(RoundEnd::kAttemptLimit, "too many attempts");
+    }
+    try {
+      if (auto end = Attempt(round)) return *end;
+    } catch (const MoveFailure& failure) {
+      if (failure.kind == MoveFailure::Kind::kFault || !round.Recover(failure.what())) {
+        round.EndAttempt(AttemptOutcome::kFault, failure.what());
+        return round.EndOfRound(RoundEnd::kFault, failure.what());
+      }
+    }
+  }
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "hw_bridge/base/parallel.h"
+#include "hw_bridge/cell/cell.h"
+#include "perception/perceive.h"
+#include "planner/cycle_report.h"
+
+namespace tubetwin {
+
+/// Config table [scan].
+struct ScanConfig {
+  int views = 8;                        ///< Of the default poses, from the first.
+  std::string resolution = "1032x772";  ///< Or "2064x1544".
+  bool rescan_all = false;              ///< Later scans of a round look everywhere again.
+  void Visit(ConfigVisitor& v);
+};
+
+/// Config table [resolution]: what is done when several tubes hang in the fingers.
+struct ResolutionConfig {
+  std::string strategy = "plus45_minus45";
+  double angle_deg = 45.0;
+  double speed_deg_s = 20.0;
+  void Visit(ConfigVisitor& v);
+};
+
+/// Config table [cycle]: speeds, forces and waits of the pick cycle.
+struct CycleConfig {
+  double transfer_speed_m_s = 0.6, transfer_acceleration_m_s2 = 1.0;
+  double approach_speed_m_s = 0.20, guarded_speed_m_s = 0.02;
+  double guard_force_N = 8.0;
+  double grip_force_N = 60.0, grip_speed_m_s = 0.10;
+  double approach_m = 0.08;  ///< Height over the grasp where the fast part ends.
+  double guarded_m = 0.010;  ///< Last part of the descent, guarded.
+  double first_lift_m = 0.03;
+  double settle_s = 2.0;  ///< Between the end of a motion and the decision.
+  double weigh_window_s = 0.2;
+  double tolerance_share = 0.5;  ///< F_tol in tube weights.
+  int attempts_per_tube = 4;  ///< The round ends after this many times the first count, plus ten.
+  void Visit(ConfigVisitor& v);
+};
+
+/// Hears what the cycle does; for recordings, progress and scoring. Default: nothing.
+class CycleObserver {
+ public:
+  virtual ~CycleObserver() = default;
+  virtual void OnStep(const std::string& /*caption*/) {}
+  /// A fresh look into the bin; `plan` is the chosen one or null.
+  virtual void OnScene(const TubeScene& /*scene*/, const PickPlan* /*plan*/) {}
+  virtual void OnClouds(const std::vector<OrganizedCloud>& /*views*/) {}
+  /// Load along gravity was tared.
+  virtual void OnReference(const Wrench& /*reference_K*/) {}
+  /// The decision how many hang in the fingers, before any resolution.
+  virtual void OnDetection(const Detection& /*detection*/) {}
+  virtual void OnAttemptEnd(const AttemptReport& /*report*/) {}
+};
+
+/// Everything the cycle needs besides the cell.
+struct PickCycleSetup {
+  Part part;
+  PerceptionConfig perception;
+  PlannerConfig planner;
+  ScanConfig scan;
+  ResolutionConfig resolution;
+  CycleConfig cycle;
+  int evaluator_samples = 1;
+  std::uint64_t seed = 1;
+  EvaluateFunction evaluate;
+  Parallelism parallelism;
+  std::function<bool()> stop_requested;  ///< Asked between attempts; may be empty.
+};
+
+/// Empties the bin: scan, model, plan, approach, grasp, weigh, resolve, place, until the scan shows
+/// an empty bin or nothing can be taken. Does not know whether the cell is simulated.
+RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer);
+
+}  // namespace tubetwin
