@@ -89,7 +89,9 @@ class Completion {
 
  private:
   bool MayHide(const Vector3& p_N, const Chain& chain) const {
-    if (!space_.FitsBin(p_N) || space_.Look(p_N) != Sight::kHidden) return false;
+    const Sight sight = space_.Look(p_N);
+    if (sight == Sight::kSurface || sight == Sight::kSeenThrough) return false;
+    if (!space_.FitsBin(p_N)) return false;
     for (std::size_t f = 0; f < fragments_.size(); ++f) {
       const bool own = std::any_of(chain.ends.begin(), chain.ends.end(),
                                    [f](int e) { return static_cast<std::size_t>(e / 2) == f; });

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace tubetwin {
 namespace {
@@ -9,8 +11,12 @@ namespace {
 /// How much deeper than a tube's surface a view must see, in radii: a bridge is a guess and may be
 /// that far off.
 constexpr double kSlack = 0.4;
-/// Contacts of real piles give a little.
-constexpr double kContact_m = 0.002;
+/// Axes of touching tubes come this much closer than two radii in piles where contacts give.
+constexpr double kContact_m = 0.001;
+/// A bridge is a guess: it may come closer to another tube, at a price (1 for the square of this
+/// depth), but not closer than so many radii.
+constexpr double kPenetrationUnit_m = 0.003;
+constexpr double kClosestRadii = 1.5;
 /// Bending energy (1/m) that costs 1: an arc of radius 50 mm over 100 mm has 40.
 constexpr double kBendingUnit = 40.0;
 /// Gap that costs 1.
@@ -20,6 +26,10 @@ constexpr double kUnconfirmed = 0.7;
 constexpr double kClosedEnd = 3.0;
 /// Costs beyond this are no explanation.
 constexpr double kDearest = 6.0;
+/// Ends closer than this (in radii) belong to one tube, whatever they look like: axes of two tubes
+/// stay two radii apart. A sharp bend breaks a fragment and looks like a cap from both sides.
+constexpr double kSameTubeRadii = 1.6;
+constexpr double kSameTubeCost = 0.1;
 /// Shorter gaps say nothing about direction.
 constexpr double kShortestChord_m = 0.02;
 
@@ -29,11 +39,12 @@ HiddenSpace::HiddenSpace(const std::vector<ViewImage>& views, const Bin& bin, do
     : views_(views), bin_(bin), radius_m_(radius_m) {}
 
 Sight HiddenSpace::Look(const Vector3& p_N) const {
-  Sight out = Sight::kUnknown;
+  Sight out = Sight::kOutside;
   for (const ViewImage& view : views_) {
     const Sight sight = LookAt(view, p_N, radius_m_, kSlack * radius_m_);
     if (sight == Sight::kSeenThrough) return sight;
-    if (sight == Sight::kSurface || out == Sight::kUnknown) out = sight;
+    // The most telling of the others: enumerators grow with what they say.
+    out = std::max(out, sight);
   }
   return out;
 }
@@ -59,10 +70,11 @@ double DistanceToOthers(const std::vector<Fragment>& fragments, const Vector3& p
 
 namespace {
 
-/// Cubic between two ends that leaves and arrives along their tangents.
-Polyline Cubic(const FragmentEnd& a, const FragmentEnd& b) {
+/// Cubic between two ends that leaves and arrives along their tangents; the smaller `stiffness`,
+/// the closer to the chord it runs in between.
+Polyline Cubic(const FragmentEnd& a, const FragmentEnd& b, double stiffness) {
   const double chord = (b.p_N - a.p_N).norm();
-  const Vector3 m0 = chord * a.outward_N, m1 = -chord * b.outward_N;
+  const Vector3 m0 = stiffness * chord * a.outward_N, m1 = -stiffness * chord * b.outward_N;
   const int pieces = std::max(1, static_cast<int>(std::ceil(1.2 * chord / kNodeStep_m)));
   Polyline line;
   for (int i = 0; i <= pieces; ++i) {
@@ -87,24 +99,51 @@ double BendingEnergy(const FragmentEnd& a, const FragmentEnd& b) {
   return 4.0 / length * (alpha.squaredNorm() + alpha.dot(beta) + beta.squaredNorm());
 }
 
-/// Share of a bridge that no view confirms; -1 when something forbids it.
-double Unconfirmed(const Bridge& bridge, const std::vector<Fragment>& fragments,
-                   const HiddenSpace& space) {
+/// What a way through the unseen costs beyond its shape; nothing when something forbids it.
+std::optional<double> CostOfPlace(const Bridge& bridge, const std::vector<Fragment>& fragments,
+                                  const HiddenSpace& space) {
   const double r = space.radius_m();
   int unknown = 0, denied_in_a_row = 0;
+  double nearest = 1e9;
   // Next to its ends a bridge is where the fragments' own edges are seen.
   for (std::size_t i = 1; i + 1 < bridge.line_N.size(); ++i) {
     const Vector3& p = bridge.line_N[i];
-    if (!space.FitsBin(p)) return -1.0;
-    if (DistanceToOthers(fragments, p, bridge.end_a / 2, bridge.end_b / 2) < 2 * r - kContact_m) {
-      return -1.0;
-    }
+    if (!space.FitsBin(p)) return std::nullopt;
+    nearest = std::min(nearest, DistanceToOthers(fragments, p, bridge.end_a / 2, bridge.end_b / 2));
+    if (nearest < kClosestRadii * r) return std::nullopt;
     const Sight sight = space.Look(p);
     denied_in_a_row = sight == Sight::kSeenThrough ? denied_in_a_row + 1 : 0;
-    if (denied_in_a_row >= 2) return -1.0;
-    unknown += sight == Sight::kUnknown;
+    if (denied_in_a_row >= 2) return std::nullopt;
+    unknown += sight == Sight::kUnknown || sight == Sight::kOutside;
   }
-  return static_cast<double>(unknown) / static_cast<double>(bridge.line_N.size());
+  const double depth = std::max(0.0, 2 * r - kContact_m - nearest) / kPenetrationUnit_m;
+  return depth * depth +
+         kUnconfirmed * static_cast<double>(unknown) / static_cast<double>(bridge.line_N.size());
+}
+
+/// The cheapest bridge between two ends; nothing when every way is forbidden or too dear.
+std::optional<Bridge> BestWay(const std::vector<Fragment>& fragments, int i, int k,
+                              const HiddenSpace& space, double longest_m) {
+  const FragmentEnd& a = fragments[static_cast<std::size_t>(i / 2)].ends[i % 2];
+  const FragmentEnd& b = fragments[static_cast<std::size_t>(k / 2)].ends[k % 2];
+  const double chord = (b.p_N - a.p_N).norm();
+  if (chord > longest_m) return std::nullopt;
+  if (chord < kSameTubeRadii * space.radius_m()) {
+    return Bridge{i, k, {a.p_N, b.p_N}, chord, kSameTubeCost};
+  }
+  const double cost_of_shape =
+      BendingEnergy(a, b) / kBendingUnit + chord / kGapUnit_m + kClosedEnd * (a.cap + b.cap);
+  if (cost_of_shape > kDearest) return std::nullopt;
+  std::optional<Bridge> best;
+  for (const double stiffness : {1.0, 0.4}) {
+    Bridge way{i, k, Cubic(a, b, stiffness), 0.0, 0.0};
+    const auto cost = CostOfPlace(way, fragments, space);
+    if (!cost) continue;
+    way.cost = cost_of_shape + *cost;
+    way.length_m = Length(way.line_N);
+    if (way.cost <= kDearest && (!best || way.cost < best->cost)) best = std::move(way);
+  }
+  return best;
 }
 
 }  // namespace
@@ -116,20 +155,8 @@ std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const Hi
   for (int i = 0; i < ends; ++i) {
     for (int k = i + 1; k < ends; ++k) {
       if (i / 2 == k / 2) continue;
-      const FragmentEnd& a = fragments[static_cast<std::size_t>(i / 2)].ends[i % 2];
-      const FragmentEnd& b = fragments[static_cast<std::size_t>(k / 2)].ends[k % 2];
-      const double chord = (b.p_N - a.p_N).norm();
-      if (chord > longest_m) continue;
-      Bridge bridge{i, k, {}, chord, 0.0};
-      bridge.cost =
-          BendingEnergy(a, b) / kBendingUnit + chord / kGapUnit_m + kClosedEnd * (a.cap + b.cap);
-      if (bridge.cost > kDearest) continue;
-      bridge.line_N = Cubic(a, b);
-      bridge.length_m = Length(bridge.line_N);
-      const double unconfirmed = Unconfirmed(bridge, fragments, space);
-      if (unconfirmed < 0.0) continue;
-      bridge.cost += kUnconfirmed * unconfirmed;
-      out.push_back(std::move(bridge));
+      auto bridge = BestWay(fragments, i, k, space, longest_m);
+      if (bridge) out.push_back(std::move(*bridge));
     }
   }
   return out;

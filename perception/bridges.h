@@ -15,7 +15,7 @@ class HiddenSpace {
   HiddenSpace(const std::vector<ViewImage>& views, const Bin& bin, double radius_m);
 
   /// What all views together say about one axis point: seen through in any view wins, then a
-  /// surface, then hidden; unknown when no view reaches there.
+  /// surface, hidden, unknown; outside when no view reaches there.
   Sight Look(const Vector3& p_N) const;
 
   /// Whether a tube's axis may pass here as far as floor and walls are concerned.
@@ -37,8 +37,8 @@ struct Bridge {
   double cost = 0.0;  ///< Bending, length, what the views do not confirm, closed ends.
 };
 
-/// All bridges that nothing forbids: along the whole way no view sees past it, no other tube's axis
-/// comes closer than two radii less 2 mm, and it stays in the bin.
+/// All bridges that nothing forbids: along the whole way no view sees past it, it keeps off the
+/// axes of all other fragments, and it stays in the bin.
 std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const HiddenSpace& space,
                                 double longest_m);
 

@@ -30,10 +30,11 @@ struct Foot {
   bool end = false;  ///< Beyond the first or last node.
 };
 
-Foot FindFoot(const Polyline& line, const Vector3& p) {
+/// Among the segments `from` to `to`, the latter excluded.
+Foot FindFoot(const Polyline& line, const Vector3& p, std::size_t from, std::size_t to) {
   Foot best;
   double nearest = 1e30;
-  for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+  for (std::size_t k = from; k < to; ++k) {
     const Vector3 d = line[k + 1] - line[k];
     const double free = (p - line[k]).dot(d) / std::max(d.squaredNorm(), 1e-18);
     const double u = std::clamp(free, 0.0, 1.0);
@@ -45,6 +46,21 @@ Foot FindFoot(const Polyline& line, const Vector3& p) {
     best.end = (k == 0 && free < 0.0) || (k + 2 == line.size() && free > 1.0);
   }
   return best;
+}
+
+/// Feet of all points anew; each moves by a few segments at most from one iteration to the next.
+void UpdateFeet(const Polyline& line, const std::vector<SurfacePoint>& points,
+                std::vector<Foot>& feet) {
+  constexpr std::size_t kReach = 3;
+  const bool first = feet.empty();
+  feet.resize(points.size());
+  const std::size_t segments = line.size() - 1;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto k = static_cast<std::size_t>(feet[i].node);
+    const std::size_t from = first || k < kReach ? 0 : k - kReach;
+    const std::size_t to = first ? segments : std::min(segments, k + kReach + 1);
+    feet[i] = FindFoot(line, points[i].p_N.cast<double>(), from, to);
+  }
 }
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
@@ -93,11 +109,13 @@ struct Equations {
   }
 };
 
-Equations Linearize(const Polyline& line, const std::vector<SurfacePoint>& points, double r) {
+Equations Linearize(const Polyline& line, const std::vector<SurfacePoint>& points,
+                    const std::vector<Foot>& feet, double r) {
   Equations eq(line.size());
-  for (const SurfacePoint& point : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SurfacePoint& point = points[i];
     const Vector3 p = point.p_N.cast<double>();
-    const Foot foot = FindFoot(line, p);
+    const Foot& foot = feet[i];
     const auto k = static_cast<std::size_t>(foot.node);
     const Vector3 c = line[k] + foot.u * (line[k + 1] - line[k]);
     const Vector3 out = p - c;
@@ -154,16 +172,18 @@ void Step(Polyline& line, const Equations& eq) {
   }
 }
 
-TubeFit Judge(const Polyline& line, const std::vector<SurfacePoint>& points, double r) {
+TubeFit Judge(const Polyline& line, const std::vector<SurfacePoint>& points,
+              const std::vector<Foot>& feet, double r) {
   TubeFit fit;
   fit.node_weight.assign(line.size(), 0.0);
   double squares = 0.0, spread = 0.0;
   std::size_t near = 0, good = 0, inside = 0;
   std::vector<Vector3> mean(line.size(), Vector3::Zero());
   std::vector<std::pair<int, Vector3>> around;
-  for (const SurfacePoint& point : points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const SurfacePoint& point = points[i];
     const Vector3 p = point.p_N.cast<double>();
-    const Foot foot = FindFoot(line, p);
+    const Foot& foot = feet[i];
     const auto k = static_cast<std::size_t>(foot.node);
     const double residual = (p - line[k] - foot.u * (line[k + 1] - line[k])).norm() - r;
     ++near;
@@ -196,8 +216,13 @@ TubeFit Judge(const Polyline& line, const std::vector<SurfacePoint>& points, dou
 
 TubeFit RefineCurve(Polyline& line_N, const std::vector<SurfacePoint>& points, double radius_m) {
   TT_CHECK(line_N.size() >= 2);
-  for (int i = 0; i < kIterations; ++i) Step(line_N, Linearize(line_N, points, radius_m));
-  return Judge(line_N, points, radius_m);
+  std::vector<Foot> feet;
+  UpdateFeet(line_N, points, feet);
+  for (int i = 0; i < kIterations; ++i) {
+    Step(line_N, Linearize(line_N, points, feet, radius_m));
+    UpdateFeet(line_N, points, feet);
+  }
+  return Judge(line_N, points, feet, radius_m);
 }
 
 }  // namespace tubetwin

@@ -230,13 +230,13 @@ ViewImage MakeViewImage(const OrganizedCloud& cloud, double pitch_m) {
 }
 
 Sight LookAt(const ViewImage& view, const Vector3& p_NC, double radius_m, double slack_m) {
-  if (view.width == 0) return Sight::kUnknown;
+  if (view.width == 0) return Sight::kOutside;
   const Vector3 p_SC = view.X_SN * p_NC;
-  if (p_SC.z() < kNearest_m) return Sight::kUnknown;
+  if (p_SC.z() < kNearest_m) return Sight::kOutside;
   const long column = std::lround(view.fx * p_SC.x() / p_SC.z() + view.cx);
   const long row = std::lround(view.fy * p_SC.y() / p_SC.z() + view.cy);
   if (column < 1 || row < 1 || column + 1 >= view.width || row + 1 >= view.height) {
-    return Sight::kUnknown;
+    return Sight::kOutside;
   }
   // The nearest return around the pixel: an edge beside the place must not deny it.
   float z = std::numeric_limits<float>::infinity();

@@ -32,9 +32,10 @@ struct ViewImage {
 /// Throws Error(kBadData) when the pose is not finite or the sizes disagree.
 ViewImage MakeViewImage(const OrganizedCloud& cloud, double pitch_m);
 
-/// What a view says about a piece of tube whose axis passes through a point.
+/// What a view says about a piece of tube whose axis passes through a point, from least to most.
 enum class Sight {
-  kUnknown,      ///< Outside the image or no return there.
+  kOutside,      ///< The view does not reach there.
+  kUnknown,      ///< No return there.
   kHidden,       ///< Something nearer is in the way.
   kSurface,      ///< A surface lies where the tube's would.
   kSeenThrough,  ///< The view looks past the place: no tube is there.
