@@ -127,6 +127,7 @@ CellWorld::CellWorld(const Pile& pile, const CellLayout& layout, const RoundPhys
   data_ = MakeData(*model_);
   SetHome(*model_, *data_, HomePosition(Hc10(), layout, pile.bin));
   MapGeoms(pile);
+  pad_contacts_.emplace(*model_);
   Refresh();
 }
 
@@ -152,6 +153,7 @@ void CellWorld::Step() {
   GuardEngine([&] {
     mj_step2(model_.get(), data_.get());
     mj_step1(model_.get(), data_.get());
+    pad_contacts_->Correct(*data_);
   });
   ++steps_;
   const StepStatus status = StatusOf(*data_);

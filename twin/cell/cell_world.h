@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "scenes/engine/mj_handles.h"
 #include "scenes/pile.h"
 #include "scenes/tube_body.h"
+#include "twin/cell/pad_contacts.h"
 #include "twin/render/scan_geometry.h"
 
 namespace tubetwin {
@@ -55,6 +57,7 @@ class CellWorld {
   MjModel model_;
   MjData data_;
   GripperSpec gripper_;
+  std::optional<PadContacts> pad_contacts_;
   std::vector<TubeBody> tubes_;
   std::vector<int> tube_of_geom_;
   std::vector<float> albedo_of_geom_;
