@@ -175,6 +175,10 @@ TEST_CASE("each rule finds what breaks it") {
       1);
   CHECK(CheckTruthStaysInCampaign(One("twin/campaign/a.cc", "#include \"twin/cell/truth.h\"\n"))
             .empty());
+  CHECK(CheckTruthStaysInCampaign(
+            {ParseSource("twin/campaign/scoring.h", "#include \"twin/cell/truth.h\"\n"),
+             ParseSource("twin/app/a.cc", "#include \"twin/campaign/scoring.h\"\n")})
+            .size() == 1);
   std::string lines;
   for (int i = 0; i < 401; ++i) lines += "\n";
   CHECK(CheckSizes(One("models/a.cc", lines)).size() == 1);
