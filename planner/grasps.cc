@@ -78,9 +78,9 @@ struct Fit {
 
 Fit CheckPoints(const Surroundings& around, const RigidTransform& X_NG, const GripperBoxes& boxes) {
   const std::array<OrientedBox, 4> solid = {
-      Moved(X_NG, boxes.finger[0]), Moved(X_NG, boxes.finger[1]), Moved(X_NG, boxes.knuckles),
+      Moved(X_NG, boxes.finger[0]), Moved(X_NG, boxes.finger[1]), Moved(X_NG, boxes.chassis),
       Moved(X_NG, boxes.above_tube)};
-  const double reach = boxes.knuckles.half_m.y() + 0.02;
+  const double reach = boxes.chassis.half_m.y() + 0.02;
   int count = 0;
   for (const Vector3& p : around.points_N) {
     const Vector3 apart = p - X_NG.translation();
@@ -103,8 +103,8 @@ Fit CheckFit(const Surroundings& around, const std::vector<Surroundings::Obstacl
   const double least = around.config.finger_clearance_m;
   Fit fit{kEnough_m, ""};
   for (const auto& [name, box] :
-       {std::pair{"fingers", boxes.fingers}, std::pair{"knuckles", boxes.knuckles},
-        std::pair{"palm", boxes.palm}}) {
+       {std::pair{"fingers", boxes.fingers}, std::pair{"chassis", boxes.chassis},
+        std::pair{"gripper base", boxes.base}}) {
     const OrientedBox box_N = Moved(X_NG, box);
     const double to_wall = WallClearance(box_N, around.bin, kEnough_m);
     if (to_wall < least) {
@@ -240,7 +240,7 @@ GraspSet RankGrasps(const GraspSites& sites, const PerceivedTube& tube,
       for (Vector3 shift : {motion.waypoints_N[k - 1], motion.waypoints_N[k]}) {
         shift.z() = std::min(motion.waypoints_N[k - 1].z(), motion.waypoints_N[k].z());
         const RigidTransform X_NG = Translation(shift) * grasp.X_NG;
-        for (const OrientedBox& box : {boxes.fingers, boxes.knuckles, boxes.palm}) {
+        for (const OrientedBox& box : {boxes.fingers, boxes.chassis, boxes.base}) {
           to_wall = std::min(to_wall, WallClearance(Moved(X_NG, box), bin, kEnough_m));
         }
       }

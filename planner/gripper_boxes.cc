@@ -2,18 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "hw_bridge/base/error.h"
+#include "models/clearance.h"
 
 namespace tubetwin {
 namespace {
 
-// The public model's linkage (reference figures of the 2F-85): crank ends 43 mm behind the pads'
-// centre and 26 mm outside the pads' faces, links 16 mm thick; body 75 mm across from 86 mm behind.
-constexpr double kKnuckleBehind_m = 0.035;
-constexpr double kKnuckleOutside_m = 0.034;
-constexpr double kKnuckleHalfX_m = 0.0135;
-constexpr double kPalmBehind_m = 0.086;
-constexpr double kPalmHalf_m = 0.0375;
-constexpr double kTopBehind_m = 0.145;  // The flange's coupling.
+// Box around a shape of the tool, in E.
+OrientedBox ToolBox(const std::string& name) {
+  const CellLayout layout;
+  using Shape = ClearanceChecker::Shape;
+  for (const Shape& shape : ClearanceChecker::ArmShapes(Hc10(), layout)) {
+    if (shape.name != name) continue;
+    const Vector3 half = shape.kind == Shape::Kind::kBox
+                             ? shape.size_m
+                             : Vector3(shape.size_m.x(), shape.size_m.x(), shape.size_m.y());
+    return {layout.X_FE.inverse() * shape.X_LinkShape, half};
+  }
+  TT_CHECK(!"the tool has this shape");
+  return {};
+}
 
 // Box from its bounds in E.
 OrientedBox Between(const Vector3& low, const Vector3& high) {
@@ -28,18 +38,19 @@ GripperBoxes MakeGripperBoxes(double opening_m, double tube_radius_m, double hei
   const double outer = hy + spec.finger_thickness_m;
   const double tip = 0.5 * spec.pad_height_m;
   GripperBoxes boxes;
-  boxes.fingers = Between({-hx, -outer, -kPalmBehind_m}, {hx, outer, tip});
-  boxes.finger[0] = Between({-hx, -outer, -kPalmBehind_m}, {hx, -hy, tip});
-  boxes.finger[1] = Between({-hx, hy, -kPalmBehind_m}, {hx, outer, tip});
+  static const OrientedBox chassis = ToolBox("gripper chassis");
+  static const OrientedBox base = ToolBox("gripper base");
+  boxes.chassis = chassis;
+  boxes.base = base;
+  // The fingers end at the chassis.
+  const double top = chassis.X_AB.translation().z() + chassis.half_m.z();
+  boxes.fingers = Between({-hx, -outer, top}, {hx, outer, tip});
+  boxes.finger[0] = Between({-hx, -outer, top}, {hx, -hy, tip});
+  boxes.finger[1] = Between({-hx, hy, top}, {hx, outer, tip});
   // Measured points of the tube itself and their noise stay below this box.
   constexpr double kOverTube_m = 0.005;
-  boxes.above_tube = Between({-hx, -hy, -kPalmBehind_m},
-                             {hx, hy, height_over_axis_m - tube_radius_m - kOverTube_m});
-  const double wide = hy + kKnuckleOutside_m;
-  boxes.knuckles = Between({-kKnuckleHalfX_m, -wide, -kPalmBehind_m},
-                           {kKnuckleHalfX_m, wide, -kKnuckleBehind_m});
-  boxes.palm = Between({-kPalmHalf_m, -kPalmHalf_m, -kTopBehind_m},
-                       {kPalmHalf_m, kPalmHalf_m, -kPalmBehind_m});
+  boxes.above_tube =
+      Between({-hx, -hy, top}, {hx, hy, height_over_axis_m - tube_radius_m - kOverTube_m});
   return boxes;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "hw_bridge/base/frames.h"
 #include "models/bin.h"
 #include "models/gripper_spec.h"
@@ -11,13 +9,13 @@ namespace tubetwin {
 
 /// What the gripper fills around E, as boxes in frame E (x along the grasped tube, y closing, z out
 /// of the tool), from the lower edge of the pads when closed on the tube up to its own body. All of
-/// it comes down vertically, so between the boxes' tops and the sky nothing else counts.
+/// it comes down vertically.
 struct GripperBoxes {
   OrientedBox fingers;     ///< Both fingers and the gap between them: no other tube may be there.
   OrientedBox finger[2];   ///< Towards -y and +y.
   OrientedBox above_tube;  ///< The gap over the tube that will be held.
-  OrientedBox knuckles;    ///< The linkage, wider than the fingers.
-  OrientedBox palm;        ///< The gripper's body.
+  OrientedBox chassis;     ///< The body that carries the fingers, from the arm's list of shapes.
+  OrientedBox base;        ///< Its round foot, from the same list.
 };
 
 /// Boxes at `opening_m` between the pads, for a tube of `tube_radius_m` whose axis lies

@@ -26,7 +26,7 @@ struct PlannerConfig {
   double grasp_step_m = 0.01;   ///< Between grasp points along the tube.
   double grasp_end_m = 0.02;    ///< Least distance of a grasp point from the tube's ends.
   double max_slope_deg = 40.0;  ///< Steepest tangent that a vertical gripper may take.
-  double finger_clearance_m = 0.002;  ///< Least distance of fingers and palm to anything.
+  double finger_clearance_m = 0.002;  ///< Least distance of fingers and gripper body to all.
   int max_points = 6;  ///< Largest number of 3 mm cubes with measured points in the way.
   double weight_height = 0.2, weight_centre = 0.5, weight_trajectory = 0.3;
   double weight_clearance = 0.1;   ///< Not in the paper: little room around the fingers costs.
@@ -50,7 +50,7 @@ struct Grasp {
   RigidTransform X_NG =
       RigidTransform::Identity();  ///< z into the bin, y across the tube (closing).
   double opening_m = 0.0;          ///< Before closing.
-  double clearance_m = 0.0;        ///< Of fingers and palm to other tubes and walls, at most 20 mm.
+  double clearance_m = 0.0;        ///< Of fingers and body to other tubes and walls, at most 20 mm.
   double cost = 0.0;
 };
 

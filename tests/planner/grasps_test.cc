@@ -85,8 +85,7 @@ TEST_CASE("A neighbour narrows the opening, and a nearer one forbids the grasp",
     const GraspSites sites = Sites(scene, 0);
     return sites.sites.empty() ? 0.0 : sites.sites.front().grasp.opening_m;
   };
-  // Pad, finger, clearance and the neighbour itself need 12.5 + side + 13 + 2 + 12.5 mm; the
-  // knuckles are wider but pass over a neighbour on the floor.
+  // Pad, finger, clearance and the neighbour itself need 12.5 + side + 13 + 2 + 12.5 mm.
   CHECK(opening_beside(0.080) == Approx(0.065));
   CHECK(opening_beside(0.050) < 0.045);
   CHECK(opening_beside(0.050) > 0.030);

@@ -1,0 +1,222 @@
+#include "planner/evaluator/evaluator.h"
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/text.h"
+#include "planner/evaluator/rollout.h"
+#include "planner/evaluator/rollout_scene.h"
+#include "planner/sweep.h"
+
+namespace tubetwin {
+namespace {
+
+using Status = CandidateScore::Status;
+
+constexpr double kExtraCost_m = 1.0, kJamCost_m = 1.0, kDivergedCost_m = 10.0;
+
+double WallSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+int IndexOf(const TubeScene& scene, int id) {
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
+    if (scene.tubes[i].id == id) return static_cast<int>(i);
+    known.push_back(std::to_string(scene.tubes[i].id));
+  }
+  throw Error(ErrorKind::kBadData, "evaluator: tube " + std::to_string(id) +
+                                       " is not in the scene, which has tubes " + Join(known));
+}
+
+void Validate(const TubeScene& scene, const EvaluationRequest& request,
+              const EvaluatorConfig& config) {
+  TT_CHECK(request.grasp_at_m.size() == request.candidates.size());
+  TT_CHECK(request.samples >= 1);
+  for (std::size_t k = 0; k < request.candidates.size(); ++k) {
+    const CandidateMotion& candidate = request.candidates[k];
+    const std::string who =
+        "evaluator: tube " + std::to_string(candidate.tube) + ", motion " + candidate.name + ": ";
+    const PerceivedTube& tube = scene.tubes[IndexOf(scene, candidate.tube)];
+    const double length_m = Length(tube.centerline_N);
+    const double at_m = request.grasp_at_m[k];
+    if (!(at_m >= 0.0 && at_m <= length_m)) {
+      throw Error(ErrorKind::kBadData,
+                  who + "held at " + Number(at_m) + " m, allowed 0 to " + Number(length_m) + " m");
+    }
+    double way_m = 0.0;
+    for (std::size_t i = 1; i < candidate.waypoints_N.size(); ++i) {
+      way_m += (candidate.waypoints_N[i] - candidate.waypoints_N[i - 1]).norm();
+    }
+    if (candidate.waypoints_N.empty() || !std::isfinite(way_m) || !(candidate.speed_m_s > 0.0) ||
+        way_m / candidate.speed_m_s > config.max_sim_s) {
+      throw Error(ErrorKind::kBadData, who + "a way of " + Number(way_m) + " m at " +
+                                           Number(candidate.speed_m_s) + " m/s, at most " +
+                                           Number(config.max_sim_s) + " s are simulated");
+    }
+  }
+}
+
+// What each thread keeps between roll-outs.
+struct Worker {
+  MjModel model;
+  MjData data;
+};
+
+// All samples of one candidate into its score.
+CandidateScore Summarize(const CandidateMotion& candidate,
+                         const std::vector<RolloutOutcome>& outcomes,
+                         const std::vector<double>& wall_s) {
+  CandidateScore score;
+  score.tube = candidate.tube;
+  score.motion = candidate.name;
+  score.waypoints_N = candidate.waypoints_N;
+  const double n = static_cast<double>(outcomes.size());
+  int jammed = 0;
+  bool diverged = false;
+  for (std::size_t k = 0; k < outcomes.size(); ++k) {
+    const RolloutOutcome& outcome = outcomes[k];
+    score.samples.push_back(outcome.displacement_m);
+    score.displacement_m += outcome.displacement_m / n;
+    if (outcome.extra) score.extra_probability += 1.0 / n;
+    score.sim_s += outcome.sim_s;
+    score.wall_s += wall_s[k];
+    if (outcome.status == Status::kJammed) ++jammed;
+    if (outcome.status == Status::kDiverged) diverged = true;
+  }
+  score.cost = score.displacement_m;
+  if (outcomes.size() > 1) score.cost += kExtraCost_m * score.extra_probability;
+  if (diverged) {
+    score.status = Status::kDiverged;
+    score.cost += kDivergedCost_m;
+  } else if (2 * jammed >= static_cast<int>(outcomes.size())) {
+    score.status = Status::kJammed;
+    score.cost += kJamCost_m;
+  }
+  return score;
+}
+
+class Evaluation {
+ public:
+  Evaluation(const TubeScene& scene, const Part& part, const Bin& bin,
+             const EvaluationRequest& request, const EvaluatorOptions& options)
+      : scene_(scene),
+        part_(part),
+        bin_(bin),
+        request_(request),
+        options_(options),
+        samples_(request.samples) {}
+
+  EvaluationResult Run() {
+    const double start_s = WallSeconds();
+    result_.threads = options_.parallelism.threads;
+    result_.candidates.resize(request_.candidates.size());
+    std::vector<int> to_run = Prune();
+    if (!to_run.empty()) {
+      BuildScenes();
+      result_.settle_s = WallSeconds() - start_s;
+      RollOutAll(to_run);
+    }
+    for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
+      const double cost = result_.candidates[k].cost;
+      if (result_.best < 0 || cost < result_.candidates[result_.best].cost) {
+        result_.best = static_cast<int>(k);
+      }
+    }
+    result_.wall_s = WallSeconds() - start_s;
+    return std::move(result_);
+  }
+
+ private:
+  // Scores the motions that touch nothing; returns the others.
+  std::vector<int> Prune() {
+    std::vector<int> to_run;
+    for (std::size_t k = 0; k < request_.candidates.size(); ++k) {
+      const CandidateMotion& candidate = request_.candidates[k];
+      if (request_.full || FirstTouched(scene_, candidate)) {
+        to_run.push_back(static_cast<int>(k));
+        continue;
+      }
+      CandidateScore& score = result_.candidates[k];
+      score.tube = candidate.tube;
+      score.motion = candidate.name;
+      score.waypoints_N = candidate.waypoints_N;
+      score.status = Status::kPruned;
+    }
+    return to_run;
+  }
+
+  void BuildScenes() {
+    scenes_.resize(samples_);
+    ParallelFor(samples_, options_.parallelism, [&](int sample, int) {
+      const SampleDraw draw = DrawSample(part_, static_cast<int>(scene_.tubes.size()), sample,
+                                         request_.seed, options_.config);
+      scenes_[sample].emplace(scene_, part_, bin_, draw, options_.config);
+    });
+  }
+
+  void RollOutAll(const std::vector<int>& to_run) {
+    const int count = static_cast<int>(to_run.size()) * samples_;
+    std::vector<RolloutOutcome> outcomes(count);
+    std::vector<double> wall_s(count, 0.0);
+    std::vector<Worker> workers(options_.parallelism.threads);
+    ParallelFor(count, options_.parallelism, [&](int task, int index) {
+      const int candidate = to_run[task / samples_];
+      const RolloutScene& scene = *scenes_[task % samples_];
+      Worker& worker = workers[index];
+      const double start_s = WallSeconds();
+      if (!worker.model) {
+        worker.model.reset(mj_copyModel(nullptr, &scene.model()));
+        worker.data = MakeData(*worker.model);
+      }
+      const CandidateMotion& motion = request_.candidates[candidate];
+      const int tube = IndexOf(scene_, motion.tube);
+      const double share = request_.grasp_at_m[candidate] / Length(scene_.tubes[tube].centerline_N);
+      outcomes[task] = RollOut(scene, tube, share, motion, request_.full, options_.config,
+                               *worker.model, *worker.data);
+      wall_s[task] = WallSeconds() - start_s;
+    });
+    for (std::size_t k = 0; k < to_run.size(); ++k) {
+      const auto from = static_cast<std::ptrdiff_t>(k) * samples_;
+      result_.candidates[to_run[k]] =
+          Summarize(request_.candidates[to_run[k]],
+                    {outcomes.begin() + from, outcomes.begin() + from + samples_},
+                    {wall_s.begin() + from, wall_s.begin() + from + samples_});
+    }
+  }
+
+  const TubeScene& scene_;
+  const Part& part_;
+  const Bin& bin_;
+  const EvaluationRequest& request_;
+  const EvaluatorOptions& options_;
+  const int samples_;
+  std::vector<std::optional<RolloutScene>> scenes_;
+  EvaluationResult result_;
+};
+
+}  // namespace
+
+void EvaluatorConfig::Visit(ConfigVisitor& v) {
+  v.Field("timestep_s", "step of the roll-outs", timestep_s, {0.0005, 0.005});
+  v.Field("hand_force_N", "force limit of the hand on each axis", hand_force_N, {1.0, 1000.0});
+  v.Field("jam_s", "a hand that is saturated for longer is jammed", jam_s, {0.0, 10.0});
+  v.Field("hold_s", "waiting after the motion, before displacements are taken", hold_s,
+          {0.0, 10.0});
+  v.Field("max_sim_s", "longest motion that is accepted", max_sim_s, {1.0, 600.0});
+  v.Field("pose_error_m", "samples after the first: sigma of each tube's position, per axis",
+          pose_error_m, {0.0, 0.02});
+}
+
+EvaluateFunction MakeEvaluator(const EvaluatorOptions& options) {
+  TT_CHECK(options.parallelism.threads >= 1);
+  return [options](const TubeScene& scene, const Part& part, const Bin& bin,
+                   const EvaluationRequest& request) {
+    Validate(scene, request, options.config);
+    return Evaluation(scene, part, bin, request, options).Run();
+  };
+}
+
+}  // namespace tubetwin

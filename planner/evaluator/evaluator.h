@@ -1,0 +1,49 @@
+#pragma once
+
+#include "hw_bridge/base/config.h"
+#include "hw_bridge/base/parallel.h"
+#include "planner/motion_types.h"
+
+namespace tubetwin {
+
+/// Config table [evaluator]: the pipeline's own nominal physics, never the twin's draw.
+struct EvaluatorConfig {
+  double timestep_s = 0.004;
+  double hand_force_N = 30.0;  ///< Of the hand on each axis; more than that is a jam.
+  double jam_s = 0.2;          ///< Saturated for longer: jammed.
+  double hold_s = 0.3;         ///< After the motion, before the displacement is taken.
+  double max_sim_s = 30.0;     ///< Longest motion that is accepted.
+  /// Samples after the first: one sigma of each perceived tube's position error, per axis.
+  double pose_error_m = 0.0007;
+  void Visit(ConfigVisitor& v);
+};
+
+struct EvaluatorOptions {
+  Parallelism parallelism;
+  EvaluatorConfig config;
+};
+
+/// Roll-outs in MuJoCo of the perceived tubes (Leão et al. 2020, section 3.3.2, with a
+/// force-limited hand instead of prescribed positions): 4 ms, discrete integrator, elliptic cone,
+/// impratio 10. Rigid parts are capsule chains, hoses two-hinge chains that rest in the perceived
+/// shape. The scene settles once per sample, loses its speed and is kept; every roll-out starts
+/// from there. A hand on three force-limited slides and a yaw servo is welded to the link that is
+/// gripped and follows the waypoints at the motion's speed, with ramps of 0.15 s.
+///
+/// A sample's displacement is the sum over the other tubes' centres of mass, each less what it
+/// creeps without any motion. The first sample is nominal; later ones draw friction, stiffness and
+/// position errors from the request's seed. displacement_m is the samples' mean, extra_probability
+/// the share of samples in which another tube ends over the rim (3 cm higher than before at least),
+/// cost = displacement + 1 m * extra_probability (samples = 1: displacement alone, as in the paper)
+/// + 1 m when jammed, + 10 m when diverged. Status: diverged when any sample did, jammed when half
+/// of them or more did, pruned when the swept volume touches no other tube. A roll-out ends early
+/// on a jam or when the lifted tube is a radius over all others and they are at rest. `full`: none
+/// of this shortening. sim_s and wall_s are sums over the samples' roll-outs.
+///
+/// The function may be called from several threads at once; results do not depend on the thread
+/// count nor on the order of candidates. Throws Error(kBadData) for a tube that is not in the
+/// scene, a motion without waypoints, longer than max_sim_s or not finite, a place outside the
+/// tube, and LogicError when grasp_at_m does not match the candidates.
+EvaluateFunction MakeEvaluator(const EvaluatorOptions& options = {});
+
+}  // namespace tubetwin

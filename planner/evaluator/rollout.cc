@@ -1,0 +1,129 @@
+#include "planner/evaluator/rollout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hw_bridge/base/error.h"
+#include "scenes/engine/engine_error.h"
+
+namespace tubetwin {
+namespace {
+
+using Status = CandidateScore::Status;
+
+constexpr double kRamp_s = 0.15;
+constexpr double kSaturated = 0.99;  // Of the hand's force limit.
+constexpr double kRaised_m = 0.03;   // A tube that was over the rim before did not come along.
+constexpr double kOthersRest_m_s = 0.005;
+constexpr int kLookEvery = 10;  // Steps between looks for an early end.
+
+struct HeightRange {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+};
+
+// Of all capsules of a tube, surfaces included.
+HeightRange Heights(const mjModel& model, const mjData& data, const TubeBody& tube) {
+  HeightRange range;
+  for (const int geom : tube.geoms()) {
+    const double reach = model.geom_size[3 * geom] +
+                         model.geom_size[3 * geom + 1] * std::abs(data.geom_xmat[9 * geom + 8]);
+    range.low = std::min(range.low, data.geom_xpos[3 * geom + 2] - reach);
+    range.high = std::max(range.high, data.geom_xpos[3 * geom + 2] + reach);
+  }
+  return range;
+}
+
+// The lifted tube is a radius over all others and these are at rest.
+bool NothingLeftToTouch(const RolloutScene& scene, int index, const mjModel& model,
+                        const mjData& data) {
+  const double low = Heights(model, data, scene.tubes()[index]).low;
+  for (int i = 0; i < static_cast<int>(scene.tubes().size()); ++i) {
+    if (i == index) continue;
+    if (Heights(model, data, scene.tubes()[i]).high + scene.radius_m(i) > low) return false;
+    if (!(scene.tubes()[i].MaxSpeed(model, data) < kOthersRest_m_s)) return false;
+  }
+  return true;
+}
+
+void Measure(const RolloutScene& scene, int index, const mjModel& model, mjData& data,
+             RolloutOutcome& outcome) {
+  GuardEngine([&] { mj_forward(&model, &data); });
+  for (int i = 0; i < static_cast<int>(scene.tubes().size()); ++i) {
+    if (i == index) continue;
+    const Vector3 centre = scene.tubes()[i].CentreOfMass_W(model, data);
+    const Vector3& before = scene.centres_N()[i];
+    const double creep_m = scene.creep_m_s()[i] * outcome.sim_s;
+    outcome.displacement_m += std::max(0.0, (centre - before).norm() - creep_m);
+    if (centre.z() > std::max(scene.wall_m(), before.z() + kRaised_m)) outcome.extra = true;
+  }
+}
+
+}  // namespace
+
+LegProfile::LegProfile(std::vector<Vector3> waypoints, double speed_m_s)
+    : waypoints_(std::move(waypoints)) {
+  TT_CHECK(!waypoints_.empty() && speed_m_s > 0.0);
+  double end_s = 0.0;
+  for (std::size_t k = 1; k < waypoints_.size(); ++k) {
+    const double length_m = (waypoints_[k] - waypoints_[k - 1]).norm();
+    const double speed = std::min(speed_m_s, length_m / kRamp_s);
+    if (length_m > 0.0) end_s += length_m / speed + kRamp_s;
+    end_s_.push_back(end_s);
+    speed_m_s_.push_back(speed);
+  }
+}
+
+Vector3 LegProfile::At(double time_s) const {
+  std::size_t leg = 0;
+  while (leg < end_s_.size() && time_s >= end_s_[leg]) ++leg;
+  if (leg == end_s_.size()) return waypoints_.back();
+  const double begin_s = leg == 0 ? 0.0 : end_s_[leg - 1];
+  const double duration_s = end_s_[leg] - begin_s, t = std::max(0.0, time_s - begin_s);
+  // Distance after a time from rest: half-cosine ramp of the speed, then constant speed.
+  const auto from_rest = [&](double time) {
+    if (time >= kRamp_s) return speed_m_s_[leg] * (time - 0.5 * kRamp_s);
+    return 0.5 * speed_m_s_[leg] * (time - kRamp_s / kPi * std::sin(kPi * time / kRamp_s));
+  };
+  const Vector3 way = waypoints_[leg + 1] - waypoints_[leg];
+  const double length_m = way.norm();
+  const double travelled =
+      t < 0.5 * duration_s ? from_rest(t) : length_m - from_rest(duration_s - t);
+  return waypoints_[leg] + way * (travelled / length_m);
+}
+
+RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
+                       const CandidateMotion& motion, bool full, const EvaluatorConfig& config,
+                       mjModel& model, mjData& data) {
+  RolloutOutcome outcome;
+  if (scene.status() != StepStatus::kOk) {
+    outcome.status = Status::kDiverged;
+    return outcome;
+  }
+  GuardEngine([&] { mj_copyModel(&model, &scene.model()); });
+  const Vector3 p_NStart = scene.Grip(index, grip_share, model, data);
+  const LegProfile profile(motion.waypoints_N, motion.speed_m_s);
+  const double dt = model.opt.timestep;
+  const int steps = static_cast<int>(std::ceil((profile.duration_s() + config.hold_s) / dt));
+  double saturated_s = 0.0;
+  int step = 0;
+  while (step < steps) {
+    ++step;
+    scene.Command(p_NStart + profile.At(step * dt), data);
+    if (Step(model, data) != StepStatus::kOk) {
+      outcome.status = Status::kDiverged;
+      break;
+    }
+    saturated_s = scene.Load(model, data) > kSaturated ? saturated_s + dt : 0.0;
+    if (saturated_s > config.jam_s) outcome.status = Status::kJammed;
+    if (full) continue;
+    if (outcome.status == Status::kJammed) break;
+    if (step % kLookEvery == 0 && NothingLeftToTouch(scene, index, model, data)) break;
+  }
+  outcome.sim_s = step * dt;
+  if (outcome.status != Status::kDiverged) Measure(scene, index, model, data, outcome);
+  return outcome;
+}
+
+}  // namespace tubetwin

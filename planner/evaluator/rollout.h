@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "planner/evaluator/rollout_scene.h"
+
+namespace tubetwin {
+
+/// Position along straight legs at a speed, standing still at every waypoint, each leg with
+/// half-cosine ramps of 0.15 s (slower when the leg is too short for them).
+class LegProfile {
+ public:
+  LegProfile(std::vector<Vector3> waypoints, double speed_m_s);
+  double duration_s() const { return end_s_.empty() ? 0.0 : end_s_.back(); }
+  Vector3 At(double time_s) const;
+
+ private:
+  std::vector<Vector3> waypoints_;
+  std::vector<double> end_s_;  ///< Of each leg.
+  std::vector<double> speed_m_s_;
+};
+
+struct RolloutOutcome {
+  CandidateScore::Status status = CandidateScore::Status::kDone;
+  double displacement_m = 0.0;
+  bool extra = false;  ///< Another tube is over the rim.
+  double sim_s = 0.0;
+};
+
+/// Moves tube `index` of a settled scene. `model` and `data` are the calling thread's own: a model
+/// of the same layout, overwritten here, and data made from it.
+RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
+                       const CandidateMotion& motion, bool full, const EvaluatorConfig& config,
+                       mjModel& model, mjData& data);
+
+}  // namespace tubetwin

@@ -1,0 +1,226 @@
+#include "planner/evaluator/rollout_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/random.h"
+#include "planner/sweep.h"
+#include "scenes/bin_body.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kChord_m = 0.001;  // Rigid tubes: error of the capsules' axes.
+// The hand: stiff against the tube, slow enough for the time step (reference: 0.4 rad per step).
+constexpr double kSlideStiffness_N_m = 2e4, kSlideArmature_kg = 1.5, kHandMass_kg = 0.2;
+constexpr double kYawStiffness_Nm = 1000.0, kYawDamping_Nms = 16.0, kYawArmature_kgm2 = 0.05;
+constexpr double kYawTorque_Nm = 5.0;
+// Settling: overlaps of what was perceived are let apart with most of the speed taken away.
+constexpr double kGentle_s = 0.24, kKeepSpeed = 0.7, kSettle_s = 1.5, kAtRest_m_s = 0.005;
+constexpr int kRestSteps = 10;
+constexpr double kCreepWindow_s = 0.4;
+constexpr double kTableBelow_m = 0.10;  // Under the bin's floor.
+
+PileTube TubeToBuild(const PerceivedTube& tube, const Part& part, const Vector3& shift) {
+  PileTube build;
+  build.id = tube.id;
+  build.radius_m = tube.radius_m;
+  const double length_m = Length(tube.centerline_N);
+  // A tube of which only a part was seen weighs only that part: the rest is not in the scene.
+  build.mass_kg = part.mass_kg * std::clamp(length_m / part.length_m, 0.1, 1.5);
+  const Polyline line = part.is_hose() ? ResampleCount(tube.centerline_N, part.links + 1)
+                                       : Simplify(tube.centerline_N, kChord_m);
+  build.centerline_N = Transformed(Translation(shift), line);
+  return build;
+}
+
+void SetServo(mjSpec& spec, const std::string& joint, double stiffness, double damping,
+              double limit) {
+  mjsActuator* servo = mjs_addActuator(&spec, nullptr);
+  SetName(servo->element, joint + "_servo");
+  servo->trntype = mjTRN_JOINT;
+  mjs_setString(servo->target, joint.c_str());
+  servo->gaintype = mjGAIN_FIXED;
+  servo->gainprm[0] = stiffness;
+  servo->biastype = mjBIAS_AFFINE;
+  servo->biasprm[0] = 0.0;
+  servo->biasprm[1] = -stiffness;
+  servo->biasprm[2] = -damping;
+  servo->forcelimited = mjLIMITED_TRUE;
+  servo->forcerange[0] = -limit;
+  servo->forcerange[1] = limit;
+}
+
+}  // namespace
+
+SampleDraw DrawSample(const Part& part, int tubes, int sample, std::uint64_t seed,
+                      const EvaluatorConfig& config) {
+  SampleDraw draw{part.friction, part.bending_stiffness_Nm2,
+                  std::vector<Vector3>(tubes, Vector3::Zero())};
+  if (sample == 0) return draw;
+  RandomStream stream(seed, static_cast<std::uint64_t>(sample), "evaluator");
+  const auto within = [&](const std::vector<double>& range, double nominal) {
+    return range.size() == 2 ? stream.Uniform(range[0], range[1]) : nominal;
+  };
+  draw.friction = within(part.friction_range, part.friction);
+  draw.bending_stiffness_Nm2 = within(part.bending_stiffness_range_Nm2, part.bending_stiffness_Nm2);
+  for (Vector3& shift : draw.shift_N) {
+    for (int k = 0; k < 3; ++k) shift[k] = stream.Normal(0.0, config.pose_error_m);
+  }
+  return draw;
+}
+
+RolloutScene::RolloutScene(const TubeScene& scene, const Part& part, const Bin& bin,
+                           const SampleDraw& draw, const EvaluatorConfig& config)
+    : wall_m_(bin.wall_m()) {
+  EngineOptions engine;
+  engine.timestep_s = config.timestep_s;
+  engine.impratio = 10.0;
+  MjSpec spec = MakeSpec(engine);
+  // Contacts may not be stiffer than two time steps.
+  const double contact_s = std::max(0.005, 2.0 * config.timestep_s);
+  BinBodyOptions bin_options;
+  bin_options.friction = draw.friction;
+  bin_options.contact_time_s = contact_s;
+  AddBin(*spec, bin, bin_options);
+  // What falls out of the bin lands somewhere.
+  AddGround(*spec, Translation(0, 0, -kTableBelow_m), bin_options);
+
+  RoundPhysics physics = NominalPhysics(part);
+  physics.tube_friction = draw.friction;
+  physics.bending_stiffness_Nm2 = draw.bending_stiffness_Nm2;
+  TubeBodyOptions options = MakeTubeBodyOptions(part, physics, RigidTransform::Identity());
+  options.contact_time_s = contact_s;
+  tubes_.reserve(scene.tubes.size());
+  for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
+    tubes_.emplace_back(*spec, "tube" + std::to_string(i),
+                        TubeToBuild(scene.tubes[i], part, draw.shift_N[i]), options);
+  }
+  AddHand(*spec, config.hand_force_N);
+  model_ = Compile(*spec, "evaluator");
+  for (TubeBody& tube : tubes_) tube.Bind(*model_);
+  BindHand();
+  Settle();
+}
+
+void RolloutScene::AddHand(mjSpec& spec, double force_N) {
+  mjsBody* hand = mjs_addBody(mjs_findBody(&spec, "world"), nullptr);
+  SetName(hand->element, "hand");
+  hand->gravcomp = 1.0;
+  hand->explicitinertial = true;
+  hand->mass = kHandMass_kg;
+  for (double& inertia : hand->inertia) inertia = 1e-3;
+  const char* names[kHandAxes] = {"hand_x", "hand_y", "hand_z", "hand_yaw"};
+  for (int axis = 0; axis < kHandAxes; ++axis) {
+    mjsJoint* joint = mjs_addJoint(hand, nullptr);
+    SetName(joint->element, names[axis]);
+    const bool slide = axis < 3;
+    joint->type = slide ? mjJNT_SLIDE : mjJNT_HINGE;
+    for (int k = 0; k < 3; ++k) joint->axis[k] = k == (slide ? axis : 2) ? 1.0 : 0.0;
+    joint->armature = slide ? kSlideArmature_kg : kYawArmature_kgm2;
+    const double critical =
+        2.0 * std::sqrt(kSlideStiffness_N_m * (kSlideArmature_kg + kHandMass_kg));
+    SetServo(spec, names[axis], slide ? kSlideStiffness_N_m : kYawStiffness_Nm,
+             slide ? critical : kYawDamping_Nms, slide ? force_N : kYawTorque_Nm);
+  }
+  // One sleeping weld per link: every candidate is a switch, not another model.
+  for (const TubeBody& tube : tubes_) {
+    for (const std::string& link : tube.body_names()) {
+      mjsEquality* weld = mjs_addEquality(&spec, nullptr);
+      SetName(weld->element, "grip_" + link);
+      weld->type = mjEQ_WELD;
+      weld->objtype = mjOBJ_BODY;
+      mjs_setString(weld->name1, "hand");
+      mjs_setString(weld->name2, link.c_str());
+      weld->active = false;
+      weld->solref[0] = 2.0 * spec.option.timestep;
+      weld->solref[1] = 1.0;
+      weld->solimp[0] = 0.99;
+      weld->solimp[1] = 0.999;
+      weld->solimp[2] = 0.001;
+    }
+  }
+}
+
+void RolloutScene::BindHand() {
+  hand_ = IdOf(*model_, mjOBJ_BODY, "hand");
+  first_axis_qpos_ = model_->jnt_qposadr[IdOf(*model_, mjOBJ_JOINT, "hand_x")];
+  first_actuator_ = IdOf(*model_, mjOBJ_ACTUATOR, "hand_x_servo");
+  TT_CHECK(IdOf(*model_, mjOBJ_ACTUATOR, "hand_yaw_servo") == first_actuator_ + 3);
+  int next = 0;
+  for (const TubeBody& tube : tubes_) {
+    TT_CHECK(IdOf(*model_, mjOBJ_EQUALITY, "grip_" + tube.body_names().front()) == next);
+    weld_offset_.push_back(next);
+    next += static_cast<int>(tube.body_names().size());
+  }
+}
+
+void RolloutScene::Settle() {
+  MjData data = MakeData(*model_);
+  const double dt = model_->opt.timestep;
+  const int gentle = static_cast<int>(kGentle_s / dt), limit = static_cast<int>(kSettle_s / dt);
+  int at_rest = 0;
+  for (int step = 0; step < limit && at_rest < kRestSteps; ++step) {
+    status_ = Step(*model_, *data);
+    if (status_ != StepStatus::kOk) return;
+    if (step < gentle) {
+      for (int k = 0; k < model_->nv; ++k) data->qvel[k] *= kKeepSpeed;
+      continue;
+    }
+    double fastest = 0.0;
+    for (const TubeBody& tube : tubes_) {
+      fastest = std::max(fastest, tube.MaxSpeed(*model_, *data));
+    }
+    at_rest = fastest < kAtRest_m_s ? at_rest + 1 : 0;
+  }
+  std::fill(data->qvel, data->qvel + model_->nv, 0.0);
+  data->time = 0.0;
+  settled_ = Snapshot(*model_, *data);
+  MeasureCreep(*data);
+}
+
+void RolloutScene::MeasureCreep(mjData& data) {
+  settled_.Restore(*model_, data);
+  for (const TubeBody& tube : tubes_) centres_N_.push_back(tube.CentreOfMass_W(*model_, data));
+  status_ = Step(*model_, data, static_cast<int>(kCreepWindow_s / model_->opt.timestep));
+  if (status_ != StepStatus::kOk) return;
+  for (std::size_t i = 0; i < tubes_.size(); ++i) {
+    const Vector3 moved = tubes_[i].CentreOfMass_W(*model_, data) - centres_N_[i];
+    creep_m_s_.push_back(moved.norm() / kCreepWindow_s);
+  }
+}
+
+Vector3 RolloutScene::Grip(int index, double share, mjModel& model, mjData& data) const {
+  settled_.Restore(model, data);
+  const TubeBody& tube = tubes_[index];
+  const TubeBody::Attachment at = tube.AttachmentAt(share * Length(tube.initial().centerline_N));
+  const RigidTransform X_NLink = BodyPose(data, tube.bodies()[at.link]);
+  const Vector3 p_NHand = X_NLink * at.p_Body;
+  const int weld = weld_offset_[index] + at.link;
+  mjtNum* eq = model.eq_data + mjNEQDATA * weld;
+  // Anchor in the link, the same point in the hand (its origin), turn of the link in the hand.
+  const std::array<double, 4> turn = QuaternionWxyz(X_NLink.linear());
+  for (int k = 0; k < 3; ++k) eq[k] = at.p_Body[k];
+  for (int k = 0; k < 3; ++k) eq[3 + k] = 0.0;
+  for (int k = 0; k < 4; ++k) eq[6 + k] = turn[k];
+  eq[10] = 1.0;
+  data.eq_active[weld] = 1;
+  for (int k = 0; k < 3; ++k) data.qpos[first_axis_qpos_ + k] = p_NHand[k];
+  Command(p_NHand, data);
+  return p_NHand;
+}
+
+void RolloutScene::Command(const Vector3& p_NHand, mjData& data) const {
+  for (int k = 0; k < 3; ++k) data.ctrl[first_actuator_ + k] = p_NHand[k];
+}
+
+double RolloutScene::Load(const mjModel& model, const mjData& data) const {
+  double load = 0.0;
+  for (int k = first_actuator_; k < first_actuator_ + kHandAxes; ++k) {
+    load = std::max(load, std::abs(data.actuator_force[k]) / model.actuator_forcerange[2 * k + 1]);
+  }
+  return load;
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "models/physics.h"
+#include "planner/evaluator/evaluator.h"
+#include "scenes/engine/mj_handles.h"
+#include "scenes/engine/stepping.h"
+#include "scenes/tube_body.h"
+
+namespace tubetwin {
+
+/// What differs between samples of one request.
+struct SampleDraw {
+  double friction = 0.3;
+  double bending_stiffness_Nm2 = 0.15;
+  std::vector<Vector3> shift_N;  ///< Of every tube.
+};
+
+/// Sample 0 is nominal and unshifted.
+SampleDraw DrawSample(const Part& part, int tubes, int sample, std::uint64_t seed,
+                      const EvaluatorConfig& config);
+
+/// Perceived tubes in a bin with the hand, settled and kept. Frame of the world: N. Immutable after
+/// construction, so threads may share it (each with its own model copy and data).
+class RolloutScene {
+ public:
+  static constexpr int kHandAxes = 4;  ///< Slides x y z, then yaw.
+
+  RolloutScene(const TubeScene& scene, const Part& part, const Bin& bin, const SampleDraw& draw,
+               const EvaluatorConfig& config);
+
+  const mjModel& model() const { return *model_; }
+  StepStatus status() const { return status_; }  ///< Of settling; the rest holds only when kOk.
+  const Snapshot& settled() const { return settled_; }
+  const std::vector<TubeBody>& tubes() const { return tubes_; }
+  const std::vector<Vector3>& centres_N() const { return centres_N_; }  ///< As settled.
+  const std::vector<double>& creep_m_s() const { return creep_m_s_; }   ///< Without any motion.
+  double wall_m() const { return wall_m_; }
+  double radius_m(int tube) const { return tubes_[tube].initial().radius_m; }
+
+  /// Restores the settled state in `data` and welds the hand to tube `index` at a share of its arc
+  /// length; writes the weld into `model`, which is a copy of model(). Returns where the hand is.
+  Vector3 Grip(int index, double share, mjModel& model, mjData& data) const;
+
+  /// Position targets of the hand's slides.
+  void Command(const Vector3& p_NHand, mjData& data) const;
+  /// Largest of the hand's forces over its limit, 1 when saturated.
+  double Load(const mjModel& model, const mjData& data) const;
+
+ private:
+  void AddHand(mjSpec& spec, double force_N);
+  void BindHand();
+  void Settle();
+  void MeasureCreep(mjData& data);
+
+  MjModel model_;
+  std::vector<TubeBody> tubes_;
+  double wall_m_ = 0.0;
+  int first_axis_qpos_ = 0, first_actuator_ = 0, first_weld_ = 0, hand_ = 0;
+  std::vector<int> weld_offset_;  ///< Index of every tube's first weld.
+  StepStatus status_ = StepStatus::kOk;
+  Snapshot settled_;
+  std::vector<Vector3> centres_N_;
+  std::vector<double> creep_m_s_;
+};
+
+}  // namespace tubetwin

@@ -1,0 +1,117 @@
+#include "planner/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hw_bridge/base/error.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kStep_m = 0.005;
+constexpr double kChord_m = 0.001;  // Error of simplified lines, part of the margin.
+constexpr double kNearer_m = 3e-4;  // Coming nearer by less than this is arithmetic, not a push.
+
+double DistanceToLine(const Vector3& p, const Vector3& a, const Vector3& b) {
+  const Vector3 d = b - a;
+  const double length2 = d.squaredNorm();
+  const double t = length2 > 0.0 ? std::clamp(d.dot(p - a) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - t * d).norm();
+}
+
+void KeepPoints(const Polyline& line, std::size_t from, std::size_t to, double tolerance_m,
+                std::vector<char>& keep) {
+  double farthest = tolerance_m;
+  std::size_t split = 0;
+  for (std::size_t i = from + 1; i < to; ++i) {
+    const double distance = DistanceToLine(line[i], line[from], line[to]);
+    if (distance <= farthest) continue;
+    farthest = distance;
+    split = i;
+  }
+  if (split == 0) return;
+  keep[split] = 1;
+  KeepPoints(line, from, split, tolerance_m, keep);
+  KeepPoints(line, split, to, tolerance_m, keep);
+}
+
+double Top(const Polyline& line) {
+  double top = line.front().z();
+  for (const Vector3& p : line) top = std::max(top, p.z());
+  return top;
+}
+
+double Bottom(const Polyline& line) {
+  double bottom = line.front().z();
+  for (const Vector3& p : line) bottom = std::min(bottom, p.z());
+  return bottom;
+}
+
+// Places of the motion every kStep_m, the start first, and from which of them on it only rises.
+struct Track {
+  std::vector<Vector3> shifts;
+  std::size_t rising_from = 0;
+};
+
+Track TrackOf(const CandidateMotion& motion) {
+  Track track;
+  track.shifts.push_back(motion.waypoints_N.front());
+  for (std::size_t k = 1; k < motion.waypoints_N.size(); ++k) {
+    const Vector3 from = motion.waypoints_N[k - 1], leg = motion.waypoints_N[k] - from;
+    const int count = std::max(1, static_cast<int>(std::ceil(leg.norm() / kStep_m)));
+    for (int i = 1; i <= count; ++i) track.shifts.push_back(from + leg * i / count);
+    if (leg.head<2>().norm() > 1e-9 || leg.z() < 0.0) track.rising_from = track.shifts.size() - 1;
+  }
+  return track;
+}
+
+bool Touches(const Polyline& moving, const Polyline& other, double radii_m, const Track& track,
+             double margin_m) {
+  const double bottom = Bottom(moving), top = Top(other);
+  const double start = ClosestOfLines(moving, other).distance_m - radii_m;
+  const double allowed = std::min(margin_m, start - kNearer_m);
+  for (std::size_t k = 1; k < track.shifts.size(); ++k) {
+    const Vector3& shift = track.shifts[k];
+    // From here on it only rises, and it is over the other already.
+    if (k > track.rising_from && bottom + shift.z() > top + radii_m + margin_m) return false;
+    const Polyline moved = Transformed(Translation(shift), moving);
+    if (ClosestOfLines(moved, other).distance_m - radii_m < allowed) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Polyline Simplify(const Polyline& line, double tolerance_m) {
+  if (line.size() < 3) return line;
+  std::vector<char> keep(line.size(), 0);
+  keep.front() = keep.back() = 1;
+  KeepPoints(line, 0, line.size() - 1, tolerance_m, keep);
+  Polyline out;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (keep[i]) out.push_back(line[i]);
+  }
+  return out;
+}
+
+std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& motion,
+                                double margin_m) {
+  TT_CHECK(!motion.waypoints_N.empty());
+  const PerceivedTube* tube = nullptr;
+  for (const PerceivedTube& candidate : scene.tubes) {
+    if (candidate.id == motion.tube) tube = &candidate;
+  }
+  TT_CHECK(tube != nullptr);
+  const Polyline moving = Simplify(tube->centerline_N, kChord_m);
+  const Track track = TrackOf(motion);
+  for (const PerceivedTube& other : scene.tubes) {
+    if (other.id == motion.tube) continue;
+    if (Touches(moving, Simplify(other.centerline_N, kChord_m), tube->radius_m + other.radius_m,
+                track, margin_m)) {
+      return other.id;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace tubetwin

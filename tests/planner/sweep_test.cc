@@ -1,0 +1,55 @@
+#include "planner/sweep.h"
+
+#include "tests/support/catch.h"
+#include "tests/support/tube_scenes.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kRadius = 0.0125;
+
+CandidateMotion Motion(int tube, std::vector<Vector3> waypoints_N) {
+  CandidateMotion motion;
+  motion.tube = tube;
+  motion.waypoints_N = std::move(waypoints_N);
+  return motion;
+}
+
+TubeScene Cross() {
+  return PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
+                       StraightLine({0.05, -0.2, 3 * kRadius}, {0.05, 0.2, 3 * kRadius})},
+                      kRadius);
+}
+
+TEST_CASE("A simplified line keeps its corners and stays within the tolerance", "[unit]") {
+  Polyline arc;
+  for (int k = 0; k <= 90; ++k) {
+    arc.push_back({0.1 * std::cos(Radians(k)), 0.1 * std::sin(Radians(k)), 0.0});
+  }
+  const Polyline few = Simplify(arc, 0.001);
+  CHECK(few.size() < 12);
+  CHECK(few.front() == arc.front());
+  CHECK(few.back() == arc.back());
+  for (const Vector3& p : arc) CHECK(Closest(few, p).distance_m <= 0.001);
+  CHECK(Simplify(StraightLine({0, 0, 0}, {1, 0, 0}), 1e-9).size() == 2);
+}
+
+TEST_CASE("Lifting the upper tube touches nothing, lifting the lower one meets it", "[unit]") {
+  const std::vector<Vector3> up = {{0, 0, 0}, {0, 0, 0.4}};
+  CHECK_FALSE(FirstTouched(Cross(), Motion(2, up)).has_value());
+  CHECK(FirstTouched(Cross(), Motion(1, up)) == 2);
+}
+
+TEST_CASE("A slide is stopped by what stands in its way only", "[unit]") {
+  const TubeScene scene = PerfectScene({StraightLine({-0.2, 0, kRadius}, {0.2, 0, kRadius}),
+                                        StraightLine({-0.2, 0.1, kRadius}, {0.2, 0.1, kRadius})},
+                                       kRadius);
+  CHECK(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0.2, 0}})) == 2);
+  CHECK_FALSE(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0.05, 0}})).has_value());
+  CHECK_FALSE(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0, 0.1}, {0, 0.2, 0.1}})).has_value());
+  // Down again behind it is fine, down onto it is not.
+  CHECK(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0, 0.1}, {0, 0.1, 0.1}, {0, 0.1, 0}})) == 2);
+}
+
+}  // namespace
+}  // namespace tubetwin
