@@ -10,10 +10,6 @@
 namespace tubetwin {
 namespace {
 
-// Above the sensor's tool face, so not weighed: transducer with its plates, scanner with bracket.
-constexpr double kSensorMass_kg = 0.45;
-constexpr double kScannerMass_kg = 1.25;
-
 /// Links below this one stay out of contact: shoulder and upper arm turn above the plate.
 constexpr int kFirstLinkInContact = 3;
 constexpr int kFlangeLink = 7;  ///< As in ClearanceChecker::Shape.
@@ -140,7 +136,7 @@ mjsBody& AddArm(mjSpec& spec, const ArmModel& arm, const CellLayout& layout) {
   SetInertial(sensor, kSensorMass_kg, Vector3::Zero(),
               BoxInertia(kSensorMass_kg, Vector3(0.075, 0.075, sensor_height_m)));
   mjsBody& scanner = AddFixed(link6, "scanner", arm.X_6F * layout.X_FS);
-  SetInertial(scanner, kScannerMass_kg, Vector3(0, 0, -0.03),
+  SetInertial(scanner, kScannerMass_kg, Vector3(0, 0, kScannerCentre_m),
               BoxInertia(kScannerMass_kg, Vector3(0.30, 0.08, 0.07)));
   mjsBody& tool = AddFixed(link6, "tool", X_6K);
   AddWristSensor(spec, tool);

@@ -13,6 +13,12 @@ namespace tubetwin {
 /// Name of the arm's joint (and of its motor) with index 0 to 5 in the cell's model.
 std::string ArmJointName(int joint);
 
+// On the flange above the sensor's tool face, so not weighed: transducer with its plates (centre
+// half way to the tool face), scanner with bracket (centre along z of S).
+inline constexpr double kSensorMass_kg = 0.45;
+inline constexpr double kScannerMass_kg = 1.25;
+inline constexpr double kScannerCentre_m = -0.03;
+
 /// Site at X_FK on the tool body, axes of K: where the wrist sensor measures.
 inline constexpr char kWristSite[] = "wrist";
 inline constexpr char kWristForce[] = "wrist_force";

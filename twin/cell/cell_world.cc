@@ -19,6 +19,8 @@ constexpr std::array<float, 4> kPlateRgba = {0.55f, 0.56f, 0.58f, 1.0f};
 constexpr std::array<float, 4> kTrayRgba = {0.70f, 0.66f, 0.55f, 1.0f};
 
 constexpr double kPlateThickness_m = 0.02;
+/// At rest tubes creep far less than this (impratio 100); what still rolls is faster.
+constexpr double kSleepSpeed_m_s = 2e-4;
 constexpr float kCellAlbedo = 0.45f;
 
 /// A box of the scene. Friction is that of the tubes: the material pair is drawn as one number.
@@ -111,6 +113,10 @@ CellWorld::CellWorld(const Pile& pile, const CellLayout& layout, const RoundPhys
   options.timestep_s = Seconds(kControlPeriod);
   options.impratio = 100.0;
   spec_ = MakeSpec(options);
+  // Tubes that lie still for 10 ms and touch nothing that moves are left out until something
+  // touches them; the arm's tree, with whatever it holds, has motors and never sleeps.
+  spec_->option.enableflags |= mjENBL_SLEEP;
+  spec_->option.sleep_tolerance = kSleepSpeed_m_s;
   SetLooks(*spec_);
   AddBox(*spec_, "plate", Translation(0.25, -0.25, -0.5 * kPlateThickness_m),
          Vector3(1.0, 1.0, 0.5 * kPlateThickness_m), physics.tube_friction, kPlateRgba);
