@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <future>
+#include <memory>
+
+#include <opencv2/videoio.hpp>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+#include "scenes/engine/engine_error.h"
+#include "twin/render/film_panels.h"
+#include "twin/render/picture.h"
+#include "twin/render/recording.h"
+#include "twin/render/stage.h"
+
+namespace tubetwin {
+namespace {
+
+// Perceived lines run inside the tubes; drawn this much higher they lie on top.
+constexpr double kLineLift_m = 0.016;
+constexpr double kLineRadius_m = 0.0028, kTargetRadius_m = 0.0048;
+
+/// Draws frames of one recording; every worker has its own data and OpenGL context.
+class FrameDrawer {
+ public:
+  FrameDrawer(const Recording& recording, int workers)
+      : recording_(recording), model_(CompileStage(recording.cell_xml, "recording")) {
+    const std::size_t nq = static_cast<std::size_t>(model_->nq);
+    for (const Recording::Frame& frame : recording.frames) {
+      if (frame.qpos.size() == nq) continue;
+      throw Error(ErrorKind::kBadData, "recording: its frames have " +
+                                           std::to_string(frame.qpos.size()) +
+                                           " coordinates, its cell has " + std::to_string(nq));
+    }
+    workers_.resize(static_cast<std::size_t>(workers));
+    for (Worker& worker : workers_) {
+      worker.data = MakeData(*model_);
+      worker.renderer = std::make_unique<SceneRenderer>(*model_, kPictureWidth, kPictureHeight);
+    }
+  }
+
+  Image Draw(int frame, int worker) {
+    mjData& data = *workers_[worker].data;
+    const mjModel& model = *model_;
+    std::copy(recording_.frames[frame].qpos.begin(), recording_.frames[frame].qpos.end(),
+              data.qpos);
+    GuardEngine([&] {
+      mj_normalizeQuat(&model, data.qpos);  // Single precision in the file.
+      mj_kinematics(&model, &data);
+      mj_comPos(&model, &data);
+      mj_camlight(&model, &data);
+    });
+    Image image = workers_[worker].renderer->Draw(data, CellView(), Strokes(frame));
+    DrawPanels(recording_, frame, image);
+    return image;
+  }
+
+ private:
+  struct Worker {
+    MjData data;
+    std::unique_ptr<SceneRenderer> renderer;
+  };
+
+  std::vector<Stroke> Strokes(int frame) const {
+    std::vector<Stroke> strokes;
+    const int index = recording_.frames[frame].overlay;
+    if (index < 0) return strokes;
+    const Recording::Overlay& overlay = recording_.overlays[index];
+    for (std::size_t i = 0; i < overlay.lines_N.size(); ++i) {
+      const bool target = static_cast<int>(i) == overlay.target;
+      strokes.push_back(
+          {Transformed(recording_.bin.X_BN * Translation(0, 0, kLineLift_m), overlay.lines_N[i]),
+           target ? kTargetRadius_m : kLineRadius_m,
+           target ? kTargetColour : ClassColour(overlay.classes[i])});
+    }
+    return strokes;
+  }
+
+  const Recording& recording_;
+  MjModel model_;
+  std::vector<Worker> workers_;
+};
+
+void Encode(cv::VideoWriter& writer, std::vector<Image>& images) {
+  for (Image& image : images) {
+    writer.write(cv::Mat(image.height, image.width, CV_8UC3, image.bgr.data()));
+  }
+}
+
+/// Draws batch after batch, in parallel, while the batch before is encoded.
+void DrawAndEncode(const Recording& recording, int stride, Parallelism parallelism,
+                   cv::VideoWriter& writer) {
+  const int count = (static_cast<int>(recording.frames.size()) + stride - 1) / stride;
+  const int workers = std::clamp(parallelism.threads, 1, std::max(1, count));
+  FrameDrawer drawer(recording, workers);
+  constexpr int kBatchPerWorker = 8;
+  const int batch = kBatchPerWorker * workers;
+  std::vector<Image> encoding;
+  for (int first = 0; first < count; first += batch) {
+    const auto policy = workers > 1 ? std::launch::async : std::launch::deferred;
+    std::future<void> encoded = std::async(policy, [&] { Encode(writer, encoding); });
+    std::vector<Image> drawn(static_cast<std::size_t>(std::min(batch, count - first)));
+    ParallelFor(static_cast<int>(drawn.size()), {workers},
+                [&](int i, int worker) { drawn[i] = drawer.Draw((first + i) * stride, worker); });
+    encoded.get();
+    encoding = std::move(drawn);
+  }
+  Encode(writer, encoding);
+}
+
+}  // namespace
+
+void RenderFilm(const Recording& recording, const std::string& path, int stride,
+                Parallelism parallelism) {
+  TT_CHECK(stride >= 1);
+  if (recording.frames.empty()) {
+    throw Error(ErrorKind::kBadData, "recording: it has no frames to make a film of");
+  }
+  WriteThroughTemporary(path, [&](const std::string& temporary) {
+    // OpenCV's FFmpeg back end encodes H.264 by libx264 at constant quality (crf 23).
+    cv::VideoWriter writer(temporary, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('a', 'v', 'c', '1'),
+                           Recording::kFramesPerSecond, {kPictureWidth, kPictureHeight}, true);
+    if (!writer.isOpened()) {
+      throw Error(ErrorKind::kCannotCreate,
+                  path +
+                      ": the film cannot be started: no space, or FFmpeg lacks H.264 (on "
+                      "Debian: apt-get install libavcodec59 libopencv-videoio406)");
+    }
+    DrawAndEncode(recording, stride, parallelism, writer);
+    writer.release();
+    // The writer reports nothing when the disk is full; a film that lost its end does not open.
+    cv::VideoCapture written(temporary, cv::CAP_FFMPEG);
+    const int count = (static_cast<int>(recording.frames.size()) + stride - 1) / stride;
+    if (!written.isOpened() || static_cast<int>(written.get(cv::CAP_PROP_FRAME_COUNT)) != count) {
+      throw Error(ErrorKind::kIo, path + ": writing the film failed");
+    }
+  });
+}
+
+void RenderPicture(const Recording& recording, int frame, const std::string& path) {
+  const int count = static_cast<int>(recording.frames.size());
+  if (frame < 0 || frame >= count) {
+    throw Error(ErrorKind::kUsage, "recording: there is no frame " + std::to_string(frame) +
+                                       ", allowed are 0 to " + std::to_string(count - 1));
+  }
+  WritePng(FrameDrawer(recording, 1).Draw(frame, 0), path);
+}
+
+}  // namespace tubetwin

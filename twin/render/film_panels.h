@@ -1,0 +1,16 @@
+#pragma once
+
+#include "twin/render/gl/scene_renderer.h"
+#include "twin/render/recording.h"
+
+namespace tubetwin {
+
+/// Colour of a class of tubes (0 free, 1 weak, 2 strong) and of the chosen one.
+Colour ClassColour(int tube_class);
+inline constexpr Colour kTargetColour = {1.0f, 1.0f, 1.0f};
+
+/// Draws caption, clock, legend and the trace of the tared load over the last ten seconds.
+/// `frame` is an index of the recording.
+void DrawPanels(const Recording& recording, int frame, Image& image);
+
+}  // namespace tubetwin

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "scenes/engine/mj_handles.h"
+#include "scenes/pile.h"
+
+namespace tubetwin {
+
+inline constexpr int kPictureWidth = 1280, kPictureHeight = 720;
+
+/// Sky, lights, shadows and smoothness of all pictures; lights of the scene itself are replaced.
+/// Changes looks only, never bodies or coordinates.
+void DressStage(mjSpec& spec);
+
+/// A recorded cell, dressed. `source` names the recording in errors. Throws Error(kBadData) when
+/// the XML does not parse or compile.
+MjModel CompileStage(const std::string& cell_xml, const std::string& source);
+
+/// Red, green, blue of a pile's tube in its picture.
+std::array<double, 3> PileColour(int tube);
+
+/// The bin with its tubes at rest, each in a colour of its own, dressed. Frame B.
+MjModel CompileStage(const Pile& pile);
+
+}  // namespace tubetwin
