@@ -15,7 +15,7 @@
 namespace tubetwin {
 namespace {
 
-// Perceived lines run inside the tubes; drawn this much higher they lie on top.
+// Perceived lines run inside the tubes; moved this much towards the camera they lie on top.
 constexpr double kLineLift_m = 0.016;
 constexpr double kLineRadius_m = 0.0028, kTargetRadius_m = 0.0048;
 

@@ -39,9 +39,9 @@ Vector3 Highest(const Polyline& line, const Vector3& up) {
 View PileView(const Bin& bin) {
   const double size = std::max(bin.size_m[0], 1.3 * bin.size_m[1]);
   View view;
-  view.target_B = bin.X_BN * Vector3(0, -0.02 * size, 0.3 * bin.wall_m());
+  view.target_B = bin.X_BN * Vector3(0, -0.01 * size, 0.3 * bin.wall_m());
   // From the side that the short axis comes from, 55 degrees over the horizon.
-  view.eye_B = bin.X_BN * Vector3(0.0, -0.95 * size, 1.35 * size);
+  view.eye_B = bin.X_BN * Vector3(0.0, -0.78 * size, 1.12 * size);
   return view;
 }
 

@@ -1,6 +1,7 @@
 #include "twin/render/stage.h"
 
 #include <array>
+#include <string_view>
 
 #include "hw_bridge/base/error.h"
 #include "scenes/bin_body.h"
@@ -16,12 +17,14 @@ void Set(T (&to)[N], const std::array<U, N>& from) {
   for (std::size_t i = 0; i < N; ++i) to[i] = static_cast<T>(from[i]);
 }
 
-void AddLight(mjsBody& world, const Vector3& pos, const Vector3& dir, float diffuse, bool shadow) {
+/// A distant light that shines along `dir`; its shadows are sharp around `centre`.
+void AddLight(mjsBody& world, const Vector3& centre, const Vector3& dir, float diffuse,
+              bool shadow) {
   mjsLight* light = mjs_addLight(&world, nullptr);
   light->type = mjLIGHT_DIRECTIONAL;
   light->castshadow = shadow;
   for (int k = 0; k < 3; ++k) {
-    light->pos[k] = pos[k];
+    light->pos[k] = centre[k] - 2.0 * dir.normalized()[k];
     light->dir[k] = dir[k];
     light->ambient[k] = 0.0f;
     light->diffuse[k] = diffuse;
@@ -29,16 +32,64 @@ void AddLight(mjsBody& world, const Vector3& pos, const Vector3& dir, float diff
   }
 }
 
-/// Colours of things that every scene names the same way: a pale floor that tubes stand out from.
-void PaintBin(mjSpec& spec) {
+// What films show: from the bin's far wall to the tray, up to the arm's elbow.
+const Vector3 kCellCentre_B(0.30, -0.30, 0.40);
+constexpr double kCellReach_m = 1.8;
+
+struct Paint {
+  const char* name;  ///< The geom's, or with a star how it begins.
+  std::array<float, 4> rgba;
+};
+constexpr std::array<float, 4> kPale = {0.80f, 0.81f, 0.83f, 1.0f};
+constexpr std::array<float, 4> kBlue = {0.13f, 0.31f, 0.60f, 1.0f};
+// Names that scenes share. A pale floor that tubes stand out from; an arm whose joints are told
+// from its links. Later entries win.
+constexpr Paint kPaints[] = {{"ground", {0.50f, 0.52f, 0.55f, 1.0f}},
+                             {"plate", {0.38f, 0.40f, 0.43f, 1.0f}},
+                             {"tray", {0.62f, 0.60f, 0.55f, 1.0f}},
+                             {"bin_floor", {0.66f, 0.67f, 0.68f, 1.0f}},
+                             {"bin_wall_*", {0.20f, 0.33f, 0.50f, 1.0f}},
+                             {"bin_plinth", {0.30f, 0.32f, 0.35f, 1.0f}},
+                             {"arm_*", kPale},
+                             {"arm_base", {0.25f, 0.26f, 0.28f, 1.0f}},
+                             {"arm_upper arm", kBlue},
+                             {"arm_forearm", kBlue},
+                             {"arm_wrist", kBlue},
+                             {"arm_force sensor", {0.55f, 0.56f, 0.58f, 1.0f}},
+                             {"arm_scanner*", {0.12f, 0.12f, 0.13f, 1.0f}},
+                             {"arm_gripper*", {0.22f, 0.23f, 0.25f, 1.0f}}};
+
+bool Matches(const std::string& name, std::string_view pattern) {
+  if (!pattern.ends_with('*')) return name == pattern;
+  return name.starts_with(pattern.substr(0, pattern.size() - 1));
+}
+
+/// Paints what has a known name. Says whether any plane was there.
+bool PaintGeoms(mjSpec& spec) {
+  bool plane = false;
   for (mjsElement* element = mjs_firstElement(&spec, mjOBJ_GEOM); element != nullptr;
        element = mjs_nextElement(&spec, element)) {
     const std::string name = mjs_getString(mjs_getName(element));
     mjsGeom* geom = mjs_asGeom(element);
-    if (name == "bin_floor") Set(geom->rgba, std::array{0.70f, 0.71f, 0.72f, 1.0f});
-    if (name.starts_with("bin_wall_")) Set(geom->rgba, std::array{0.20f, 0.33f, 0.50f, 1.0f});
-    if (name == "ground") Set(geom->rgba, std::array{0.50f, 0.52f, 0.55f, 1.0f});
+    plane = plane || geom->type == mjGEOM_PLANE;
+    for (const Paint& paint : kPaints) {
+      if (Matches(name, paint.name)) Set(geom->rgba, paint.rgba);
+    }
   }
+  return plane;
+}
+
+/// The hall's floor, just below the cell's plate: for the eye only.
+void AddFloor(mjSpec& spec) {
+  constexpr double kPlateThickness_m = 0.02;
+  mjsGeom* floor = mjs_addGeom(mjs_findBody(&spec, "world"), nullptr);
+  SetName(floor->element, "tubetwin_floor");
+  floor->type = mjGEOM_PLANE;
+  floor->pos[2] = -kPlateThickness_m - 0.001;
+  floor->size[0] = floor->size[1] = 0.0;  // Endless.
+  floor->size[2] = 1.0;
+  floor->contype = floor->conaffinity = 0;
+  Set(floor->rgba, std::array{0.56f, 0.58f, 0.60f, 1.0f});
 }
 
 }  // namespace
@@ -52,13 +103,14 @@ std::array<double, 3> PileColour(int tube) {
   return kColours[static_cast<std::size_t>(tube) % std::size(kColours)];
 }
 
-void DressStage(mjSpec& spec) {
+void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m) {
   mjsBody* world = mjs_findBody(&spec, "world");
   while (mjsElement* light = mjs_firstElement(&spec, mjOBJ_LIGHT)) mjs_delete(&spec, light);
-  AddLight(*world, {1.6, -1.2, 3.0}, {-0.45, 0.35, -1.0}, 0.62f, true);
-  AddLight(*world, {-1.0, -2.0, 2.0}, {0.6, 0.8, -0.6}, 0.22f, false);
+  AddLight(*world, centre_B, {-0.40, 0.50, -1.0}, 0.58f, true);
+  AddLight(*world, centre_B, {-0.9, 0.3, -0.25}, 0.20f, false);
+  AddLight(*world, centre_B, {0.7, 0.6, -0.5}, 0.16f, false);
+  if (!PaintGeoms(spec)) AddFloor(spec);
 
-  PaintBin(spec);
   mjsTexture* sky = mjs_addTexture(&spec, nullptr);
   SetName(sky->element, "tubetwin_sky");
   sky->type = mjTEXTURE_SKYBOX;
@@ -84,10 +136,12 @@ void DressStage(mjSpec& spec) {
   visual.headlight.active = 1;
   // Clip planes and shadow box are multiples of the extent: one metre, whatever the scene.
   spec.stat.extent = 1.0;
-  Set(spec.stat.center, std::array{0.35, -0.25, 0.2});
+  for (int k = 0; k < 3; ++k) spec.stat.center[k] = centre_B[k];
   visual.map.znear = 0.05f;
-  visual.map.zfar = 30.0f;
-  visual.map.shadowclip = 1.6f;
+  visual.map.zfar = 60.0f;
+  visual.map.shadowclip = static_cast<float>(reach_m);
+  visual.map.haze = 0.35f;
+  Set(visual.rgba.haze, std::array{0.80f, 0.84f, 0.88f, 1.0f});
 }
 
 MjModel CompileStage(const std::string& cell_xml, const std::string& source) {
@@ -99,7 +153,7 @@ MjModel CompileStage(const std::string& cell_xml, const std::string& source) {
   if (spec == nullptr) {
     throw Error(ErrorKind::kBadData, source + ": the cell's XML does not parse: " + error);
   }
-  DressStage(*spec);
+  DressStage(*spec, kCellCentre_B, kCellReach_m);
   try {
     return Compile(*spec, source);
   } catch (const Error& problem) {
@@ -120,7 +174,8 @@ MjModel CompileStage(const Pile& pile) {
     tube_options.colour_rgb = PileColour(static_cast<int>(i));
     TubeBody(*spec, "tube_" + std::to_string(pile.tubes[i].id), pile.tubes[i], tube_options);
   }
-  DressStage(*spec);
+  const Vector3 centre_B = pile.bin.X_BN * Vector3(0, 0, 0.5 * pile.bin.wall_m());
+  DressStage(*spec, centre_B, 0.5 * Vector3(pile.bin.size_m.data()).norm() + 0.4);
   return Compile(*spec, "picture of a pile");
 }
 

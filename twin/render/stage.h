@@ -10,9 +10,10 @@ namespace tubetwin {
 
 inline constexpr int kPictureWidth = 1280, kPictureHeight = 720;
 
-/// Sky, lights, shadows and smoothness of all pictures; lights of the scene itself are replaced.
-/// Changes looks only, never bodies or coordinates.
-void DressStage(mjSpec& spec);
+/// Sky, floor, colours, lights and smoothness of all pictures; lights of the scene itself are
+/// replaced. Shadows fall within `reach_m` of `centre_B`. Changes looks only, never bodies or
+/// coordinates.
+void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m);
 
 /// A recorded cell, dressed. `source` names the recording in errors. Throws Error(kBadData) when
 /// the XML does not parse or compile.
