@@ -37,7 +37,8 @@ TubeBodyOptions MakeTubeBodyOptions(const Part& part, const RoundPhysics& physic
 /// towards the middle (no twist). The scene starts in the shape of `centerline_N`, while the joint
 /// springs pull towards `rest_centerline_N` (how the rest shape is turned about the hose's own axis
 /// is not stored: the turn of least bending energy is taken). Stiffness EI / l per joint, damping
-/// 0.02 s times that, armature 1e-5 kg m^2: within 6 % of beam theory for 50 mm links. Geoms are
+/// 0.02 s times that, armature 1e-5 kg m^2: within 6 % of beam theory for 50 mm links. A free joint
+/// loses 2e-5 N m s/rad, which ends rolling. Geoms are
 /// `NAME_gi`.
 ///
 /// Add to a spec, compile, Bind, then read. Const calls are thread safe (one mjData each).
