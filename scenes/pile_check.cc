@@ -52,9 +52,10 @@ void CheckLine(const std::string& where, const char* name, const Polyline& line,
 
 void CheckTube(const std::string& where, const PileTube& tube, const Pile& pile) {
   const bool hose = pile.part.is_hose();
+  // The line first: where the mass follows from it, a bad line makes a bad mass.
+  CheckLine(where, "centerline_m", tube.centerline_N, hose);
   CheckRange(where, "radius_m", tube.radius_m, 0.003, 0.04);
   CheckRange(where, "mass_kg", tube.mass_kg, 0.001, 5.0);
-  CheckLine(where, "centerline_m", tube.centerline_N, hose);
   const Vector3 size(pile.bin.size_m[0], pile.bin.size_m[1], pile.bin.size_m[2]);
   if (const double length_m = Length(tube.centerline_N); length_m > size.norm()) {
     Fail(where, "is " + Number(length_m) + " m long; allowed: up to the bin's diagonal, " +

@@ -212,7 +212,7 @@ TEST_CASE("A pile of the public set settles between low walls", "[physics]") {
   const SettleResult result = SettlePile(pile, NominalPhysics(pile.part));
   CHECK(result.status == SettleStatus::kSettled);
   CHECK(result.simulated_s < 3.0);
-  const double kLoosened_m = 0.05;  // Friction 0.3 here, 1.16 where the pile was made.
+  const double kLoosened_m = 0.10;  // Friction 0.3 here, 1.16 where the pile was made.
   CHECK(LargestGap(pile, result.pile) < kLoosened_m);
 }
 
