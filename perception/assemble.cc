@@ -9,6 +9,9 @@ namespace {
 /// Least seen part of a tube that is reported, as a share of its length and in radii.
 constexpr double kLeastSeen = 0.15;
 constexpr double kLeastSeenRadii = 4.0;
+/// Somewhere a tube shows enough of its roundness (rms sine of the normals; a strip of a third of
+/// the upper half has this): a stick's edge or a fold does not.
+constexpr double kRound = 0.3;
 /// Shorter lacks are within the error of two ends.
 constexpr double kLack_m = 0.006;
 /// An end with this much of a cap seen is the tube's own end.
@@ -123,6 +126,12 @@ double Confidence(const PerceivedTube& tube, const Chain& chain,
                     0.0, 1.0);
 }
 
+bool IsRound(const Chain& chain, const std::vector<Fragment>& fragments) {
+  return std::any_of(chain.ends.begin(), chain.ends.end(), [&](int e) {
+    return fragments[static_cast<std::size_t>(e / 2)].normal_spread >= kRound;
+  });
+}
+
 bool TouchesBin(const Polyline& line, const Bin& bin) {
   return std::any_of(line.begin(), line.end(), [&bin](const Vector3& p) {
     return std::abs(p.x()) < bin.half_x_m() && std::abs(p.y()) < bin.half_y_m();
@@ -147,7 +156,8 @@ std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
   for (const Chain* chain : order) {
     PerceivedTube tube = Concatenate(*chain, fragments, bridges);
     const double seen_m = SeenLength(tube);
-    if (seen_m < least_m || !TouchesBin(tube.centerline_N, bin)) continue;
+    if (seen_m < least_m || !IsRound(*chain, fragments)) continue;
+    if (!TouchesBin(tube.centerline_N, bin)) continue;
     const double lack_m = tube_length_m - chain->length_m;
     if (lack_m > kLack_m) Completion(fragments, space).Complete(tube, *chain, lack_m);
     tube.id = static_cast<int>(out.size());

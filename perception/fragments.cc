@@ -110,6 +110,7 @@ Fragment FitTrace(const Trace& trace, const std::vector<SurfacePoint>& points,
   out.line_N = line;
   out.rms_m = fit.rms_m;
   out.fit = fit.share;
+  out.normal_spread = fit.normal_spread;
   for (int end = 0; end < 2; ++end) {
     FragmentEnd& e = out.ends[static_cast<std::size_t>(end)];
     e.p_N = end == 0 ? line.front() : line.back();

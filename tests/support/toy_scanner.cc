@@ -126,7 +126,7 @@ OrganizedCloud ToyScan(const ToyScene& scene, const ToyCamera& camera, const Rig
   const Image image = Cast(scene, camera.width, camera.height, camera.focal_px, X_NS);
   const RigidTransform X_SP = Translation(camera.baseline_m, 0, 0);
   Image projector;
-  const int pw = camera.width * 2, ph = camera.height * 2;
+  const int pw = camera.width * 2, ph = camera.height;  // Lights all that the camera sees.
   if (camera.baseline_m != 0.0) {
     projector = Cast(scene, pw, ph, camera.focal_px, X_NS * X_SP);
   }
