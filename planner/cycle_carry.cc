@@ -11,7 +11,8 @@ constexpr double kReleaseExtra_m = 0.030;  ///< Opening beyond the tube when let
 constexpr double kRestAfterTilt_s = 1.0;
 constexpr double kWeakTorque_Nm = 0.02;    ///< Below, the torque axis is arbitrary.
 constexpr double kPlaceGap_m = 0.003;      ///< E stops this far above touching the tray.
-constexpr double kGuardedPlace_m = 0.050;  ///< Two tubes already laid may be met from here on.
+constexpr double kAbovePlace_m = 0.20;     ///< Last weighing: above all that lies on the tray.
+constexpr double kGuardedPlace_m = 0.035;  ///< From here on what lies on the tray may be met.
 constexpr double kTruthDelay_s = 1.0;      ///< Placed counts one second after release.
 
 void Open(CycleContext& c) {
@@ -121,21 +122,14 @@ void PutBack(CycleContext& c) {
 
 AttemptOutcome Place(CycleContext& c, const Polyline& line_E) {
   const CycleConfig& speeds = c.setup.cycle;
-  // Both senses of the tube's direction are equal: the one that turns joint 6 less.
-  const auto placement = [&](double yaw_near_rad) {
-    return PlanPlacement(c.cell.layout, line_E, c.setup.part.radius_m, c.placed, yaw_near_rad);
-  };
-  const double yaw = ToolYaw(c.mover.X_BE().linear());
-  PlacementPose pose = placement(yaw);
-  const PlacementPose turned = placement(yaw + kPi);
-  if (c.mover.TurnNeeded(turned.X_BE) < c.mover.TurnNeeded(pose.X_BE)) pose = turned;
-  RigidTransform above = pose.X_BE;
-  above.translation().z() += 0.12;
+  const PlacementPose pose = PlanPlacement(c.cell.layout, line_E, c.setup.part.radius_m, c.placed_T,
+                                           ToolYaw(c.mover.X_BE().linear()));
+  RigidTransform X_BE = pose.X_BE;
+  X_BE.translation().z() += kAbovePlace_m;
   {
     const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
-    c.observer.OnStep("carrying to slot " +
-                      std::to_string(c.placed % SlotCount(c.cell.layout) + 1));
-    c.mover.Transfer(above, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
+    c.observer.OnStep("carrying to slot " + std::to_string(pose.slot + 1));
+    c.mover.Transfer(X_BE, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
   }
   if (c.Weigh(0.3).outcome == HeldOutcome::kNone) {
     c.report.reason = "nothing hangs in the fingers over the tray";
@@ -143,19 +137,18 @@ AttemptOutcome Place(CycleContext& c, const Polyline& line_E) {
   }
   const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
   c.observer.OnStep("laying down");
-  RigidTransform down = pose.X_BE;
-  down.translation().z() += kGuardedPlace_m;
-  c.mover.Line(down, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
-  down.translation().z() = pose.X_BE.translation().z() + kPlaceGap_m;
-  // Another tube may lie where this one comes to rest: then it is laid upon it.
-  c.mover.GuardedLine(down, 2.0 * speeds.guarded_speed_m_s, 0.5 * speeds.guard_force_N);
+  X_BE.translation().z() = pose.X_BE.translation().z() + kGuardedPlace_m;
+  c.mover.Line(X_BE, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
+  // Another tube may lie where this one comes to rest: what is felt ends the descent.
+  X_BE.translation().z() = pose.X_BE.translation().z() - pose.raised_m + kPlaceGap_m;
+  c.mover.GuardedLine(X_BE, 2.0 * speeds.guarded_speed_m_s, 0.5 * speeds.guard_force_N);
   Open(c);
   const TimeNs released = c.cell.clock.Now();
   Retreat(c);
   const double since_s = Seconds(c.cell.clock.Now() - released);
   if (since_s < kTruthDelay_s) Wait(c.cell, kTruthDelay_s - since_s);
+  c.placed_T.push_back(pose.line_T);
   c.report.slot_centre_T = pose.slot_centre_T;
-  ++c.placed;
   return AttemptOutcome::kPlaced;
 }
 

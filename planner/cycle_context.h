@@ -23,7 +23,7 @@ struct CycleContext {
   AttemptReport report;  ///< Of the running attempt.
   Wrench reference_K;    ///< Tare with empty fingers, tool vertical.
   TimeNs attempt_began{0};
-  int placed = 0;
+  std::vector<Polyline> placed_T;  ///< Tubes on the tray, as they were laid.
 
   /// Adds the simulated time that passes during its life to one class of the report.
   class Timed {

@@ -109,31 +109,4 @@ void Mover::Tilt(const Vector3& rotation_B, double speed_rad_s) {
   Run(planner_.PlanTilt(Start(), rotation_B, options), "tilt");
 }
 
-double Mover::TurnNeeded(const RigidTransform& X_BE) const {
-  const auto q = planner_.Reach(X_BE, 0.0);
-  return q ? std::abs((*q)[5]) : 10.0;
-}
-
-std::optional<std::string> PickProblem(const MotionPlanner& planner, const Bin& bin,
-                                       const Grasp& grasp, const CandidateMotion& motion,
-                                       double approach_m) {
-  MotionOptions options;
-  options.opening_m = grasp.opening_m;
-  options.finger_clearance_m = kFingerClearance_m;
-  const RigidTransform X_BG = bin.X_BN * grasp.X_NG;
-  RigidTransform above = X_BG;
-  above.translation() -= approach_m * X_BG.linear().col(2);
-  const auto q_above = planner.Reach(above);
-  if (!q_above) return "the arm does not reach the approach";
-  std::vector<RigidTransform> poses{X_BG};
-  for (std::size_t i = 1; i < motion.waypoints_N.size(); ++i) {
-    RigidTransform X_BE = X_BG;
-    X_BE.translation() += bin.X_BN.linear() * motion.waypoints_N[i];
-    poses.push_back(X_BE);
-  }
-  const MotionResult chain = planner.PlanPolyline(*q_above, poses, options);
-  if (const auto* rejection = std::get_if<MotionRejection>(&chain)) return rejection->reason;
-  return std::nullopt;
-}
-
 }  // namespace tubetwin

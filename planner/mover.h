@@ -7,7 +7,6 @@
 
 #include "hw_bridge/cell/cell.h"
 #include "planner/motion_plan.h"
-#include "planner/plan.h"
 
 namespace tubetwin {
 
@@ -47,9 +46,6 @@ class Mover {
   /// About E, which stays where it is. Rotation vector in B, radians.
   void Tilt(const Vector3& rotation_B, double speed_rad_s);
 
-  /// How far joint 6 is from its middle with E at this pose, radians; large when out of reach.
-  double TurnNeeded(const RigidTransform& X_BE) const;
-
   const MotionPlanner& planner() const { return planner_; }
 
   /// Opening of the pads from now on, for the clearance of the fingers.
@@ -65,11 +61,5 @@ class Mover {
   double opening_m_ = 0.085;
   JointVector q_;  ///< End of the last motion; the measured joints where one was stopped.
 };
-
-/// Whether the arm can run a grasp and the motion after it, from `approach_m` above the grasp on:
-/// nothing, or why not. Nothing moves.
-std::optional<std::string> PickProblem(const MotionPlanner& planner, const Bin& bin,
-                                       const Grasp& grasp, const CandidateMotion& motion,
-                                       double approach_m);
 
 }  // namespace tubetwin

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hw_bridge/base/error.h"
+#include "planner/arm_feasibility.h"
 #include "planner/choose.h"
 #include "planner/cycle_context.h"
 #include "planner/points.h"
@@ -20,7 +21,7 @@ constexpr int kMostRecoveries = 5;           ///< Rejected motions in one round.
 class Round {
  public:
   Round(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer)
-      : c_{cell, setup, observer, Mover(cell), {}, {}, {}, 0}, looker_(c_) {}
+      : c_{cell, setup, observer, Mover(cell), {}, {}, {}, {}}, looker_(c_) {}
 
   void BeginAttempt() {
     c_.report = AttemptReport();
@@ -66,10 +67,7 @@ class Round {
     const PlanResult result = PlanPicks(
         scene, ThinPoints(looker_.views(), c_.cell.bin), c_.setup.part, c_.cell.bin,
         c_.setup.planner, c_.setup.evaluate,
-        [this](const Grasp& grasp, const CandidateMotion& motion) {
-          return PickProblem(c_.mover.planner(), c_.cell.bin, grasp, motion,
-                             c_.setup.cycle.approach_m);
-        },
+        ArmFeasibility(c_.mover.planner(), c_.cell.layout, c_.cell.bin, c_.setup.part.radius_m),
         c_.setup.seed);
     c_.report.rejections = result.rejections;
     // What failed is not tried again before everything else was.
@@ -216,7 +214,7 @@ class Round {
     RoundReport out;
     out.end = end;
     out.reason = reason;
-    out.placed_believed = c_.placed;
+    out.placed_believed = static_cast<int>(c_.placed_T.size());
     out.unseen_m3 = looker_.scene().unseen_m3;
     return out;
   }

@@ -65,7 +65,6 @@ struct PickCycleSetup {
   ScanConfig scan;
   ResolutionConfig resolution;
   CycleConfig cycle;
-  int evaluator_samples = 1;
   std::uint64_t seed = 1;
   EvaluateFunction evaluate;
   Parallelism parallelism;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "hw_bridge/base/frames.h"
 #include "hw_bridge/base/polyline.h"
 #include "models/layout.h"
@@ -8,8 +10,11 @@ namespace tubetwin {
 
 /// Where a held tube goes: E over the slot, and where the tube should then lie.
 struct PlacementPose {
-  RigidTransform X_BE = RigidTransform::Identity();  ///< Tube's lowest point at the surface.
+  int slot = 0;                                      ///< Index in Slots().
+  RigidTransform X_BE = RigidTransform::Identity();  ///< The tube touches what lies below it.
   Vector3 slot_centre_T = Vector3::Zero();           ///< Where the tube's centre is meant to be.
+  Polyline line_T;                                   ///< The tube then, frame T.
+  double raised_m = 0.0;  ///< How much higher than on the bare tray: it lies across another.
 };
 
 /// Direction of a tube from its own points: first principal axis, its sign along the end-to-end
@@ -17,15 +22,16 @@ struct PlacementPose {
 /// of `line`.
 Vector3 PrincipalDirection(const Polyline& line);
 
-/// Number of slots side by side on the tray.
-int SlotCount(const CellLayout& layout);
+/// Centres of the slots, frame T: 55 mm apart along the tray's x; two rows where `extent_y_m`, the
+/// tube's size along the tray's y, leaves room for them, one otherwise.
+std::vector<Vector3> Slots(const CellLayout& layout, double extent_y_m);
 
-/// Lays the `index`-th tube (from 0; slots are used again from the first when all are full) into
-/// its slot: direction along the tray's y, centre on the slot's centre as far as E stays in its
-/// zone. `line_E`: the held tube's centerline relative to E; tool vertical. Both senses of the
-/// direction are equal for a tube: the yaw nearer to `yaw_near_rad` is taken.
+/// Chooses the slot and the sense of the tube's direction (both are equal) that keep the tube
+/// farthest from those that lie already (`placed_T`), then the smaller slot, then the smaller turn
+/// from `yaw_near_rad`. Its direction lies along the tray's y, its centre on the slot's centre as
+/// far as E stays in its zone. `line_E`: the held tube's centerline relative to E; tool vertical.
 PlacementPose PlanPlacement(const CellLayout& layout, const Polyline& line_E, double radius_m,
-                            int index, double yaw_near_rad);
+                            const std::vector<Polyline>& placed_T, double yaw_near_rad);
 
 /// Yaw of a vertical tool: angle of E's x axis about B's z, with E's z pointing down.
 double ToolYaw(const Matrix3& R_BE);

@@ -50,6 +50,8 @@ void HandleMessage(const mjLogMessage* message) {
 
 }  // namespace
 
+std::string EngineVersion() { return mj_versionString(); }
+
 void InitEngine() {
   static std::once_flag once;
   std::call_once(once, [] {

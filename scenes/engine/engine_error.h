@@ -12,6 +12,9 @@ namespace tubetwin {
 /// to MUJOCO_LOG.TXT. Done once per process; MakeSpec (mj_handles.h) calls it. Thread safe.
 void InitEngine();
 
+/// Version of the loaded library, "4.0.1".
+std::string EngineVersion();
+
 /// The engine's warnings since the last call, oldest first, of all threads (at most 100 are kept).
 /// Thread safe. Tests use it: a warning that nobody expects is a failure.
 std::vector<std::string> TakeEngineWarnings();

@@ -30,32 +30,46 @@ TEST_CASE("A laid tube lies in its slot, along the tray, on the surface", "[unit
   for (int trial = 0; trial < 100; ++trial) {
     // Held near its middle, so that E stays within its zone.
     const double yaw = stream.Uniform(-kPi, kPi);
-    const double off = stream.Uniform(-0.02, 0.02);
+    const double off = stream.Uniform(-0.007, 0.007);
     const Vector3 axis(std::cos(yaw), std::sin(yaw), 0.0);
     const Polyline line_E = {(off - 0.25) * axis, (off + 0.25) * axis};
-    const int index = static_cast<int>(stream.Index(8));
     const double near = stream.Uniform(-kPi, kPi);
-    const PlacementPose pose = PlanPlacement(layout, line_E, radius_m, index, near);
+    const PlacementPose pose = PlanPlacement(layout, line_E, radius_m, {}, near);
     const Polyline line_T = Transformed(layout.X_BT.inverse() * pose.X_BE, line_E);
     const Vector3 direction = (line_T[1] - line_T[0]).normalized();
     CHECK(std::abs(direction.x()) < 1e-9);
     CHECK((CurveCentre(line_T) - pose.slot_centre_T - Vector3(0, 0, radius_m)).norm() < kExact);
     CHECK(std::abs(pose.slot_centre_T.x()) <= 0.5 * layout.tray_zone_m + kExact);
     CHECK(pose.X_BE.linear().col(2).isApprox(Vector3(0, 0, -1)));
-    double turn = std::remainder(ToolYaw(pose.X_BE.linear()) - near, 2 * kPi);
-    CHECK(std::abs(turn) <= kPi / 2 + 1e-6);
+    CHECK(pose.raised_m == 0.0);
   }
 }
 
-TEST_CASE("Slots are 55 mm apart, and used again when all are full", "[unit]") {
+TEST_CASE("Slots are 55 mm apart; short parts get two rows", "[unit]") {
   const CellLayout layout;
-  const Polyline line_E = {Vector3(-0.2, 0, 0), Vector3(0.2, 0, 0)};
-  const auto x = [&](int index) {
-    return PlanPlacement(layout, line_E, 0.01, index, 0.0).slot_centre_T.x();
-  };
-  CHECK(SlotCount(layout) == 8);
-  CHECK(x(1) - x(0) == Approx(layout.slot_pitch_m));
-  CHECK(x(8) == Approx(x(0)));
+  const std::vector<Vector3> one = Slots(layout, 0.5), two = Slots(layout, 0.25);
+  REQUIRE(one.size() == 8);
+  CHECK(one[1].x() - one[0].x() == Approx(layout.slot_pitch_m));
+  CHECK(one[0].y() == 0.0);
+  REQUIRE(two.size() == 16);
+  CHECK(two[0].y() == Approx(-two[1].y()));
+}
+
+TEST_CASE("Straight tubes are laid side by side without touching until the tray is full",
+          "[unit]") {
+  const CellLayout layout;
+  const double radius_m = 0.0125;
+  const Polyline line_E = {Vector3(-0.24, 0, 0), Vector3(0.24, 0, 0)};
+  std::vector<Polyline> placed;
+  for (int i = 0; i < 9; ++i) {
+    const PlacementPose pose = PlanPlacement(layout, line_E, radius_m, placed, 0.0);
+    for (const Polyline& other : placed) {
+      if (i < 8) CHECK(ClosestOfLines(pose.line_T, other).distance_m > 2 * radius_m);
+    }
+    // The ninth lies upon another one.
+    CHECK(pose.raised_m == Approx(i < 8 ? 0.0 : 2 * radius_m).margin(1e-6));
+    placed.push_back(pose.line_T);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+#include "planner/arm_feasibility.h"
+
+#include <algorithm>
+
+#include "models/gripper_spec.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kFingerClearance_m = 0.001;  // The pads end 2 mm over the floor.
+
+}  // namespace
+
+RigidTransform ToolPoseAtGrasp(const Grasp& grasp, double radius_m, const Bin& bin) {
+  return bin.X_BN * grasp.X_NG * Translation(0, 0, PadRetreat(2.0 * radius_m));
+}
+
+FeasibilityFunction ArmFeasibility(const MotionPlanner& motion, const CellLayout& layout,
+                                   const Bin& bin, double radius_m) {
+  return [&motion, carry_m = layout.carry_height_m, bin, radius_m](
+             const Grasp& grasp, const CandidateMotion& candidate) -> std::optional<std::string> {
+    const RigidTransform X_BE = ToolPoseAtGrasp(grasp, radius_m, bin);
+    const RigidTransform X_NE = bin.X_BN.inverse() * X_BE;
+    const double rise_m = std::max(0.0, carry_m - X_NE.translation().z());
+    const RigidTransform X_BEOver = bin.X_BN * Translation(0, 0, rise_m) * X_NE;
+
+    const std::optional<JointVector> q_over = motion.Reach(X_BEOver);
+    if (!q_over) return "the place over the grasp is out of reach";
+    MotionOptions options;
+    options.finger_clearance_m = kFingerClearance_m;
+    options.opening_m = grasp.opening_m;
+    const MotionResult down = motion.PlanLine(*q_over, X_BE, options);
+    if (const auto* refused = std::get_if<MotionRejection>(&down)) {
+      return "approach: " + refused->reason;
+    }
+
+    std::vector<RigidTransform> X_BE_way;
+    for (std::size_t k = 1; k < candidate.waypoints_N.size(); ++k) {
+      X_BE_way.push_back(bin.X_BN * Translation(candidate.waypoints_N[k]) * X_NE);
+    }
+    if (X_BE_way.empty()) return std::nullopt;
+    options.opening_m = 2.0 * radius_m;
+    options.speed_m_s = candidate.speed_m_s;
+    const MotionResult away =
+        motion.PlanPolyline(EndOf(std::get<CheckedTrajectory>(down)), X_BE_way, options);
+    if (const auto* refused = std::get_if<MotionRejection>(&away)) {
+      return candidate.name + ": " + refused->reason;
+    }
+    return std::nullopt;
+  };
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,187 @@
+// The program as a user meets it: exit codes and messages for bad input, and small real runs.
+
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+
+namespace tubetwin {
+namespace {
+
+struct Outcome {
+  int code = 0;
+  std::string out, err;
+};
+
+/// Runs `tubetwin ARGUMENTS` in `folder`; `environment` goes before it ("A=b ").
+Outcome RunProgram(const TemporaryFolder& folder, const std::string& arguments,
+                   const std::string& environment = "") {
+  const std::string command = "cd '" + folder.path() + "' && " + environment + "'" +
+                              TUBETWIN_BINARY + "' " + arguments + " > out.txt 2> err.txt";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(folder.path() + "/out.txt"),
+          ReadFile(folder.path() + "/err.txt")};
+}
+
+void Write(const TemporaryFolder& folder, const std::string& name, const std::string& text) {
+  std::ofstream(folder.path() + "/" + name, std::ios::binary) << text;
+}
+
+int Lines(const std::string& text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+const char* const kGoodPile =
+    R"({"schema": "tubetwin/pile/1", "bin": {"size_m": [0.77, 0.58, 0.09]}, "part": "pvc_a",
+ "tubes": [{"id": 4, "centerline_m": [[-0.24, 0, 0.0125], [0.26, 0, 0.0125]], "radius_m": 0.0125, "mass_kg": 0.055}],
+ "seed": 1, "settled": false})";
+
+std::string Replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+void CheckRefused(const TemporaryFolder& folder, const std::string& arguments, int code,
+                  const std::string& said, const std::string& environment = "") {
+  INFO(arguments);
+  const Outcome outcome = RunProgram(folder, arguments, environment);
+  INFO(outcome.err);
+  CHECK(outcome.code == code);
+  CHECK(outcome.err.find(said) != std::string::npos);
+  CHECK(Lines(outcome.err) >= 1);
+  CHECK(Lines(outcome.err) <= 4);
+}
+
+TEST_CASE("A missing input ends with 66 and names the file or the nearest part", "[app]") {
+  const TemporaryFolder folder;
+  CheckRefused(folder, "run --pile no.csv --out o", 66, "no.csv: no such file");
+  CheckRefused(folder, "perceive no.pcd --part pvc_a --out t.json", 66, "no.pcd: no such file");
+  CheckRefused(folder, "pile generate --part pvc_b --count 3 --seed 1 --out p.json", 66, "pvc_a");
+  CHECK_FALSE(std::filesystem::exists(folder.path() + "/o"));
+}
+
+TEST_CASE("A wrong command line ends with 64", "[app]") {
+  const TemporaryFolder folder;
+  CheckRefused(folder, "fly --out o", 64, "fly");
+  CheckRefused(folder, "run", 64, "--out");
+  CheckRefused(folder, "run --out o --bin 0.8,0.6", 64, "0.8,0.6");
+  CheckRefused(folder, "run --out o --require placed", 64, "KEY>=VALUE");
+  CheckRefused(folder, "pile generate --part pvc_a --count 0 --seed 1 --out p.json", 64, "count");
+}
+
+TEST_CASE("A bad configuration ends with 78, naming file, line and the nearest key", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "unknown.toml", "seed = 1\n[pile]\ncuont = 7\n");
+  CheckRefused(folder, "run unknown.toml --out o", 78, "unknown.toml:3");
+  CheckRefused(folder, "run unknown.toml --out o", 78, "count");
+  Write(folder, "type.toml", "[pile]\ncount = \"seven\"\n");
+  CheckRefused(folder, "config check type.toml", 78, "type.toml:2");
+  CheckRefused(folder, "config check type.toml --set pile.count=-3", 78, "pile.count");
+  CHECK_FALSE(std::filesystem::exists(folder.path() + "/o"));
+}
+
+TEST_CASE("A bad pile ends with 65, naming file and field", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "nan.csv", "tube,index,x,y,z\n1,0,0.1,0.1,0.02\n1,1,nan,0.1,0.02\n");
+  CheckRefused(folder, "run --pile nan.csv --out o", 65, "nan.csv");
+  Write(folder, "empty.json",
+        Replaced(kGoodPile, kGoodPile + std::string(kGoodPile).find("[{"), "[]}"));
+  CheckRefused(folder, "pile show empty.json", 65, "empty.json");
+  Write(
+      folder, "none.json",
+      R"({"schema": "tubetwin/pile/1", "bin": {"size_m": [0.77, 0.58, 0.09]}, "part": "pvc_a", "tubes": [], "seed": 1, "settled": false})");
+  CheckRefused(folder, "run --pile none.json --out o", 65, "tube");
+  Write(folder, "long.json", Replaced(kGoodPile, "[-0.24, 0, 0.0125]", "[-1.24, 0, 0.0125]"));
+  CheckRefused(folder, "run --pile long.json --out o", 65, "diagonal");
+  Write(folder, "type.json",
+        Replaced(kGoodPile, "\"radius_m\": 0.0125", "\"radius_m\": \"thick\""));
+  CheckRefused(folder, "run --pile type.json --out o", 65, "radius_m");
+  CHECK_FALSE(std::filesystem::exists(folder.path() + "/o/picks.jsonl"));
+}
+
+TEST_CASE("A bad cloud ends with 65 and costs no memory", "[app]") {
+  const TemporaryFolder folder;
+  const std::string head =
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
+  Write(folder, "short.pcd",
+        head + "WIDTH 4\nHEIGHT 2\nVIEWPOINT 0 0 0.5 0 1 0 0\nPOINTS 8\nDATA binary\n1234");
+  CheckRefused(folder, "perceive short.pcd --part pvc_a --out t.json", 65, "short.pcd");
+  Write(folder, "huge.pcd",
+        head +
+            "WIDTH 1000000\nHEIGHT 1000000\nVIEWPOINT 0 0 0.5 0 1 0 0\nPOINTS 1000000000000\nDATA "
+            "binary\n1234");
+  // Under a limit of 1 GiB of memory: nothing may be allocated from the header's word.
+  CheckRefused(folder, "perceive huge.pcd --part pvc_a --out t.json", 65, "huge.pcd",
+               "ulimit -v 4194304; ");
+  CHECK_FALSE(std::filesystem::exists(folder.path() + "/t.json"));
+}
+
+TEST_CASE("An output that cannot be made ends with 73", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "taken", "a file, no folder\n");
+  CheckRefused(folder, "pile generate --part pvc_a --count 1 --seed 1 --out taken/p.json", 73,
+               "taken");
+}
+
+TEST_CASE("Rows of another configuration are kept and end with 73", "[app]") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() + "/o");
+  Write(folder, "o/picks.jsonl", "{}\n");
+  Write(folder, "o/config.resolved.toml", "seed = 5\n");
+  Write(folder, "p.json", kGoodPile);
+  CheckRefused(folder, "run --pile p.json --out o", 73, "another configuration");
+  CHECK(ReadFile(folder.path() + "/o/picks.jsonl") == "{}\n");
+}
+
+TEST_CASE("Images without EGL end with 69 and name the packages", "[app][render]") {
+  const TemporaryFolder folder;
+  Write(folder, "p.json", kGoodPile);
+  CheckRefused(folder, "render p.json --out p.png", 69, "libegl",
+               "__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere.json ");
+  CHECK_FALSE(std::filesystem::exists(folder.path() + "/p.png"));
+}
+
+TEST_CASE("The resolved configuration reads back as itself", "[app]") {
+  const TemporaryFolder folder;
+  const Outcome first = RunProgram(folder, "config dump --set pile.count=5 --seed 9");
+  REQUIRE(first.code == 0);
+  Write(folder, "dumped.toml", first.out);
+  const Outcome second = RunProgram(folder, "config dump dumped.toml");
+  CHECK(second.code == 0);
+  CHECK(second.out == first.out);
+}
+
+TEST_CASE("One tube is picked and placed, and the same seed gives the same rows", "[app][slow]") {
+  const TemporaryFolder folder;
+  Write(folder, "p.json", kGoodPile);
+  const Outcome first =
+      RunProgram(folder, "run --pile p.json --seed 3 --threads 1 --require 'placed>=1' --out a");
+  INFO(first.err);
+  REQUIRE(first.code == 0);
+  const Outcome again =
+      RunProgram(folder, "run a/config.resolved.toml --threads 2 --require 'placed>=2' --out b");
+  CHECK(again.code == 1);  // Only one tube: the requirement does not hold.
+  CHECK(ReadFile(folder.path() + "/a/picks.jsonl") == ReadFile(folder.path() + "/b/picks.jsonl"));
+  CHECK(ReadFile(folder.path() + "/a/summary.json") == ReadFile(folder.path() + "/b/summary.json"));
+  CHECK(ReadFile(folder.path() + "/a/start.pile.json") ==
+        ReadFile(folder.path() + "/b/start.pile.json"));
+  const Json row = Json::parse(ReadFile(folder.path() + "/a/picks.jsonl"));
+  CHECK(row["success"] == true);
+  CHECK(row["target"] == 0);
+  CHECK(row["truth"]["held"] == 1);
+  CHECK(row["truth"]["placed_ids"] == Json::array({4}));  // The file's own id.
+  CHECK(row["truth"]["placement_error_mm"].get<double>() < 10.0);
+}
+
+}  // namespace
+}  // namespace tubetwin

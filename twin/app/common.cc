@@ -1,0 +1,76 @@
+#include "twin/app/common.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+#include "hw_bridge/base/error.h"
+
+namespace tubetwin {
+
+void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc,
+                      bool out_required) {
+  verb.add_option("--set", common.overrides, "Override a configuration key: a.b=value (repeatable)")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  verb.add_option("--threads", common.threads, "Worker threads; results do not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  verb.add_option("--seed", common.seed, "Seed of everything random")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{9007199254740991}))
+      ->type_name("N");
+  if (!out_doc.empty()) {
+    auto* option = verb.add_option("--out", common.out, out_doc)->type_name("PATH");
+    if (out_required) option->required();
+  }
+  verb.add_flag("--json", common.json, "Print JSON instead of a table");
+  verb.add_flag("-v,--verbose", common.verbose, "Say more");
+  verb.add_flag("-q,--quiet", common.quiet, "Say nothing but errors");
+}
+
+Scenario LoadScenario(const std::vector<std::string>& files, const Common& common) {
+  ConfigSource source;
+  for (const std::string& file : files) source.AddFile(file);
+  for (const std::string& text : common.overrides) source.AddOverride(text);
+  Scenario scenario;
+  source.ReadInto(scenario);
+  if (common.seed) scenario.seed = *common.seed;
+  return scenario;
+}
+
+void Say(const Common& common, const std::string& line) {
+  if (!common.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+ProgressLine::ProgressLine(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) == 1) {}
+
+ProgressLine::~ProgressLine() {
+  if (enabled_) std::fprintf(stderr, "\r\033[K");
+}
+
+void ProgressLine::Show(const std::string& text) {
+  if (enabled_) std::fprintf(stderr, "\r\033[K%s", text.substr(0, 110).c_str());
+}
+
+TubeScene SceneOfPile(const Pile& pile) {
+  TubeScene scene;
+  double radius_m = pile.part.radius_m;
+  for (const PileTube& tube : pile.tubes) {
+    PerceivedTube seen;
+    seen.id = tube.id;
+    seen.centerline_N = tube.centerline_N;
+    seen.radius_m = tube.radius_m;
+    seen.length_m = Length(tube.centerline_N);
+    seen.visible_fraction = 1.0;
+    seen.confidence = 1.0;
+    seen.node_visible.assign(tube.centerline_N.size(), 1);
+    radius_m = tube.radius_m;
+    scene.tubes.push_back(std::move(seen));
+  }
+  AssignClasses(scene, radius_m);
+  return scene;
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/base/json.h"
+#include "hw_bridge/base/parallel.h"
+#include "perception/tube_scene.h"
+#include "scenes/pile.h"
+#include "twin/campaign/scenario.h"
+
+namespace CLI {
+class App;
+}
+
+namespace tubetwin {
+
+/// Options that every verb understands, and what the chosen verb does when parsing is over.
+struct Common {
+  std::vector<std::string> overrides;  ///< --set a.b=value
+  int threads = 0;                     ///< 0: all cores.
+  std::optional<std::int64_t> seed;
+  std::string out;
+  bool json = false, verbose = false, quiet = false;
+  std::function<int()> action;  ///< Returns the exit code.
+
+  Parallelism parallelism() const {
+    return threads > 0 ? Parallelism{threads} : Parallelism::All();
+  }
+};
+
+/// Adds --set, --threads, --seed, --out, --json, -v, -q to a verb. `out_doc` empty: no --out;
+/// `out_required`: refused without it.
+void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc,
+                      bool out_required);
+
+/// Scenario from defaults, `files` in order, then --set and --seed.
+Scenario LoadScenario(const std::vector<std::string>& files, const Common& common);
+
+/// A line to stderr unless quiet.
+void Say(const Common& common, const std::string& line);
+
+/// One-line progress on a terminal's stderr, overwritten in place; nothing when stderr is no
+/// terminal.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool enabled);
+  ~ProgressLine();
+  void Show(const std::string& text);
+
+ private:
+  bool enabled_;
+};
+
+/// A pile's own centerlines as a scene: every tube seen whole.
+TubeScene SceneOfPile(const Pile& pile);
+
+// The verbs; each adds itself to the program.
+void AddRunVerb(CLI::App& app, Common& common);
+void AddPileVerb(CLI::App& app, Common& common);
+void AddScanVerb(CLI::App& app, Common& common);
+void AddPerceiveVerb(CLI::App& app, Common& common);
+void AddPlanVerb(CLI::App& app, Common& common);
+void AddEvaluateVerb(CLI::App& app, Common& common);
+void AddRenderVerb(CLI::App& app, Common& common);
+void AddPartVerb(CLI::App& app, Common& common);
+void AddDoctorVerb(CLI::App& app, Common& common);
+void AddConfigVerb(CLI::App& app, Common& common);
+
+}  // namespace tubetwin

@@ -1,0 +1,350 @@
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+
+#include "hw_bridge/base/cloud.h"
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+#include "hw_bridge/base/text.h"
+#include "planner/arm_feasibility.h"
+#include "planner/choose.h"
+#include "planner/evaluator/evaluator.h"
+#include "planner/motions.h"
+#include "twin/app/common.h"
+#include "twin/render/scan_geometry.h"
+
+namespace tubetwin {
+namespace fs = std::filesystem;
+namespace {
+
+// ---- scan ----
+
+struct ScanOptions {
+  std::string pile, view = "all", part, bin;
+  bool labels = false;
+};
+
+ScanGeometry GeometryOf(const Pile& pile) {
+  ScanGeometry out;
+  constexpr float kBinAlbedo = 0.5f, kTubeAlbedo = 0.7f;
+  for (std::size_t k = 0; k < pile.tubes.size(); ++k) {
+    const Polyline line_B = Transformed(pile.bin.X_BN, pile.tubes[k].centerline_N);
+    for (std::size_t i = 1; i < line_B.size(); ++i) {
+      out.capsules.push_back({line_B[i - 1], line_B[i], pile.tubes[k].radius_m,
+                              kLabelFirstTube + static_cast<std::uint32_t>(k), kTubeAlbedo});
+    }
+  }
+  const double x = pile.bin.half_x_m(), y = pile.bin.half_y_m(), h = 0.5 * pile.bin.wall_m();
+  const double t = 0.5 * Bin::kWallThickness_m;
+  const auto box = [&](const Vector3& centre_N, const Vector3& half_m) {
+    out.boxes.push_back({pile.bin.X_BN * Translation(centre_N), half_m, kLabelCell, kBinAlbedo});
+  };
+  box({0, 0, -t}, {x + 2 * t, y + 2 * t, t});
+  for (const double side : {-1.0, 1.0}) {
+    box({side * (x + t), 0, h}, {t, y + 2 * t, h});
+    box({0, side * (y + t), h}, {x + 2 * t, t, h});
+  }
+  return out;
+}
+
+std::vector<std::size_t> ChosenViews(const std::string& text, std::size_t count) {
+  std::vector<std::size_t> out;
+  if (text == "all") {
+    for (std::size_t i = 0; i < count; ++i) out.push_back(i);
+    return out;
+  }
+  char* end = nullptr;
+  const long n = std::strtol(text.c_str(), &end, 10);
+  if (text.empty() || *end != '\0' || n < 0 || n >= static_cast<long>(count)) {
+    throw Error(ErrorKind::kUsage,
+                "--view '" + text + "': all, or 0 to " + std::to_string(count - 1) + " is needed");
+  }
+  out.push_back(static_cast<std::size_t>(n));
+  return out;
+}
+
+int ScanPile(const ScanOptions& scan, const Common& common) {
+  PileOverrides overrides;
+  if (!scan.part.empty()) overrides.part = scan.part;
+  if (!scan.bin.empty()) overrides.bin_size_m = ParseBinSize(scan.bin);
+  const Pile pile = LoadPile(scan.pile, overrides);
+  const Scenario scenario = LoadScenario({}, common);
+  const std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
+  const RoundPhysics physics =
+      scenario.physics.randomize
+          ? DrawPhysics(scenario.physics, pile.part, RandomStream(seed, 0, "physics"))
+          : NominalPhysics(pile.part);
+  ScanSettings settings;
+  settings.noise_scale = physics.depth_noise_scale;
+  settings.labels = scan.labels;
+  if (scenario.scan.resolution == "2064x1544") {
+    settings.width = settings.spec.full_width;
+    settings.height = settings.spec.full_height;
+  }
+  const ScanGeometry geometry = GeometryOf(pile);
+  const std::vector<RigidTransform> poses_BS = DefaultScanPoses(pile.bin);
+  MakeFolder(common.out);
+  for (const std::size_t i : ChosenViews(scan.view, poses_BS.size())) {
+    const RigidTransform X_BS_true = poses_BS[i] * physics.X_SbelievedS;
+    OrganizedCloud cloud =
+        CastScan(geometry, X_BS_true, settings, RandomStream(seed, 0, "scan").Fork("view", i),
+                 common.parallelism());
+    cloud.X_NS = pile.bin.X_BN.inverse() * poses_BS[i];
+    const std::string base = (fs::path(common.out) / ("view_" + std::to_string(i))).string();
+    WritePcd(cloud, base + ".pcd");
+    WritePly(cloud, base + ".ply");
+    if (scan.labels) {
+      WriteJsonFile(Json{{"X_NS_true", ToJson(pile.bin.X_BN.inverse() * X_BS_true)}},
+                    base + ".truth.json");
+    }
+  }
+  return 0;
+}
+
+// ---- perceive ----
+
+struct PerceiveOptions {
+  std::vector<std::string> clouds;
+  std::string part, bin, profile, pose, labelled;
+};
+
+RigidTransform ParsePose(const std::string& text) {
+  std::vector<double> numbers;
+  const char* at = text.c_str();
+  while (*at != '\0') {
+    char* end = nullptr;
+    const double value = std::strtod(at, &end);
+    if (end == at || !std::isfinite(value)) break;
+    numbers.push_back(value);
+    at = *end == ',' ? end + 1 : end;
+    if (*end != ',' && *end != '\0') break;
+  }
+  if (numbers.size() != 7 || *at != '\0') {
+    throw Error(ErrorKind::kUsage,
+                "--pose '" + text + "': tx,ty,tz,qw,qx,qy,qz is needed (metres, scanner in bin)");
+  }
+  const Eigen::Vector4d q(numbers[3], numbers[4], numbers[5], numbers[6]);
+  if (std::abs(q.norm() - 1.0) > 1e-2) {
+    throw Error(ErrorKind::kUsage, "--pose '" + text + "': qw,qx,qy,qz has length " +
+                                       Number(q.norm()) + ", 1 is needed");
+  }
+  return MakeTransform(RotationFromWxyz(q[0], q[1], q[2], q[3]),
+                       Vector3(numbers[0], numbers[1], numbers[2]));
+}
+
+/// Each valid point gets 2 + index of the tube it lies nearest to (at most 1.6 radii), else 0.
+void LabelByTubes(OrganizedCloud& cloud, const TubeScene& scene) {
+  cloud.label.assign(cloud.size(), kLabelNone);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!IsValid(cloud.p_SP[i])) continue;
+    const Vector3 p_NP = cloud.X_NS * cloud.p_SP[i].cast<double>();
+    double best = 1e9;
+    for (std::size_t k = 0; k < scene.tubes.size(); ++k) {
+      const double reach = 1.6 * scene.tubes[k].radius_m;
+      const double distance = Closest(scene.tubes[k].centerline_N, p_NP).distance_m;
+      if (distance < best && distance < reach) {
+        best = distance;
+        cloud.label[i] = kLabelFirstTube + static_cast<std::uint32_t>(k);
+      }
+    }
+  }
+}
+
+int PerceiveClouds(const PerceiveOptions& given, const Common& common) {
+  const Part part = LoadPart(given.part);
+  Bin bin;
+  if (!given.bin.empty()) bin.size_m = ParseBinSize(given.bin);
+  const Scenario scenario = LoadScenario({}, common);
+  std::vector<OrganizedCloud> views;
+  for (const std::string& file : given.clouds) {
+    views.push_back(ReadCloud(file));
+    if (!given.pose.empty()) views.back().X_NS = ParsePose(given.pose);
+    views.back().label.clear();  // The pipeline never sees labels.
+  }
+  const TubeScene scene = Perceive(views, part, bin, scenario.perception, common.parallelism());
+  Json out = ToJson(scene);
+  out["part"] = PartToJson(part);
+  out["bin"] = ToJson(bin);
+  WriteJsonFile(out, common.out);
+  if (!given.labelled.empty()) {
+    LabelByTubes(views.front(), scene);
+    WritePcd(views.front(), given.labelled);
+  }
+  Say(common, std::to_string(scene.tubes.size()) + " tubes, " +
+                  std::to_string(scene.crossings.size()) + " crossings, " +
+                  std::to_string(scene.unexplained_points) + " unexplained points: " + common.out);
+  return 0;
+}
+
+// ---- plan ----
+
+int PlanScene(const std::string& file, const std::string& part_name, const Common& common) {
+  const Json json = ReadJsonFile(file);
+  const JsonView document(json, file);
+  const TubeScene scene = TubeSceneFromJson(document);
+  Part part;
+  if (!part_name.empty()) {
+    part = LoadPart(part_name);
+  } else if (const auto named = document.Optional("part")) {
+    part = PartFromJson(*named);
+  } else {
+    throw Error(ErrorKind::kUsage, file + ": names no part; give --part");
+  }
+  const auto bin_view = document.Optional("bin");
+  const Bin bin = bin_view ? BinFromJson(*bin_view) : Bin();
+  const Scenario scenario = LoadScenario({}, common);
+  const MotionPlanner motion(Hc10(), CellLayout(), bin);
+  const FeasibilityFunction feasible = ArmFeasibility(motion, CellLayout(), bin, part.radius_m);
+  const PlanResult result = PlanPicks(scene, {}, part, bin, scenario.planner,
+                                      MakeEvaluator({common.parallelism(), scenario.evaluator}),
+                                      feasible, static_cast<std::uint64_t>(scenario.seed));
+  WriteJsonFile(ToJson(result), common.out);
+  if (result.plans.empty()) {
+    std::printf("no plan; %zu rejections\n", result.rejections.size());
+  } else {
+    const PickPlan& best = result.plans.front();
+    std::printf("%zu plans; best: tube %d (%s) by %s, cost %.3f%s\n", result.plans.size(),
+                best.target, ToString(best.target_class), best.motion.name.c_str(), best.cost,
+                best.used_simulator ? ", simulated" : "");
+  }
+  return 0;
+}
+
+// ---- evaluate ----
+
+struct EvaluateOptions {
+  std::string pile, part, bin, motions = "all";
+  std::optional<int> tube;
+  int samples = 1;
+  bool full = false;
+};
+
+EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
+                              const EvaluateOptions& given, const PlannerConfig& planner) {
+  EvaluationRequest request;
+  request.samples = given.samples;
+  request.full = given.full;
+  bool found = false;
+  for (const PerceivedTube& tube : scene.tubes) {
+    if (given.tube && tube.id != *given.tube) continue;
+    found = true;
+    for (CandidateMotion& motion : MakeMotions(scene, tube, pile.bin, planner).motions) {
+      const bool up = motion.name == "up";
+      if ((given.motions == "up" && !up) || (given.motions == "escape" && up)) continue;
+      request.grasp_at_m.push_back(0.5 * tube.length_m);
+      request.candidates.push_back(std::move(motion));
+    }
+  }
+  if (!found) {
+    std::vector<std::string> ids;
+    for (const PerceivedTube& tube : scene.tubes) ids.push_back(std::to_string(tube.id));
+    throw Error(ErrorKind::kUsage, "--tube " + std::to_string(*given.tube) + ": " + given.pile +
+                                       " has the tubes " + Join(ids));
+  }
+  return request;
+}
+
+int EvaluatePile(const EvaluateOptions& given, const Common& common) {
+  PileOverrides overrides;
+  if (!given.part.empty()) overrides.part = given.part;
+  if (!given.bin.empty()) overrides.bin_size_m = ParseBinSize(given.bin);
+  const Pile pile = LoadPile(given.pile, overrides);
+  const Scenario scenario = LoadScenario({}, common);
+  const TubeScene scene = SceneOfPile(pile);
+  EvaluationRequest request = MakeRequest(scene, pile, given, scenario.planner);
+  request.seed = static_cast<std::uint64_t>(scenario.seed);
+  const EvaluateFunction evaluate = MakeEvaluator({common.parallelism(), scenario.evaluator});
+  const EvaluationResult result = evaluate(scene, pile.part, pile.bin, request);
+  const Json json = ToJson(result);
+  WriteJsonFile(json, common.out);
+  if (common.json) {
+    std::printf("%s\n", json.dump(2).c_str());
+  } else if (!common.quiet) {
+    std::printf("tube  motion      status    displacement_m  extra  cost\n");
+    for (const CandidateScore& score : result.candidates) {
+      std::printf("%4d  %-10s  %-8s  %14.4f  %5.2f  %.4f\n", score.tube, score.motion.c_str(),
+                  ToString(score.status), score.displacement_m, score.extra_probability,
+                  score.cost);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddScanVerb(CLI::App& app, Common& common) {
+  auto given = std::make_shared<ScanOptions>();
+  CLI::App* verb =
+      app.add_subcommand("scan",
+                         "Example: tubetwin scan p.json --view all --labels --out out/scan\n\n"
+                         "What the scanner would see: organised PCD and PLY per view.");
+  verb->add_option("pile", given->pile, "pile.json, CSV or the public set's text")->required();
+  verb->add_option("--view", given->view, "all, or the number of one view");
+  verb->add_option("--part", given->part, "Part name or part file");
+  verb->add_option("--bin", given->bin, "Inner size of the bin: long,short,wall in metres");
+  verb->add_flag("--labels", given->labels,
+                 "Write each point's tube and the true pose, for scoring");
+  AddCommonOptions(*verb, common, "Folder for view_N.pcd and .ply", true);
+  verb->callback(
+      [given, &common] { common.action = [given, &common] { return ScanPile(*given, common); }; });
+}
+
+void AddPerceiveVerb(CLI::App& app, Common& common) {
+  auto given = std::make_shared<PerceiveOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "perceive",
+      "Example: tubetwin perceive out/scan/view_*.pcd --part pvc_a --out tubes.json\n\n"
+      "Tubes and crossings from clouds alone.");
+  verb->add_option("clouds", given->clouds, "PCD or PLY files, one per view")->required();
+  verb->add_option("--part", given->part, "Part name or part file")->required();
+  verb->add_option("--bin", given->bin, "Inner size of the bin: long,short,wall in metres");
+  verb->add_option("--profile", given->profile, "Pipeline profile")->check(CLI::IsMember({"best"}));
+  verb->add_option("--pose", given->pose,
+                   "tx,ty,tz,qw,qx,qy,qz of the scanner in the bin, where a file has none");
+  verb->add_option("--labelled", given->labelled,
+                   "Also write the first cloud with each point's tube");
+  AddCommonOptions(*verb, common, "tubes.json to write", true);
+  verb->callback([given, &common] {
+    common.action = [given, &common] { return PerceiveClouds(*given, common); };
+  });
+}
+
+void AddPlanVerb(CLI::App& app, Common& common) {
+  auto file = std::make_shared<std::string>();
+  auto part = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("plan",
+                                      "Example: tubetwin plan tubes.json --out plan.json\n\n"
+                                      "Candidate motions, grasps, ranking, and the reasons "
+                                      "for rejections.");
+  verb->add_option("tubes", *file, "tubes.json")->required();
+  verb->add_option("--part", *part, "Part name or part file; default: what tubes.json names");
+  AddCommonOptions(*verb, common, "plan.json to write", true);
+  verb->callback([file, part, &common] {
+    common.action = [file, part, &common] { return PlanScene(*file, *part, common); };
+  });
+}
+
+void AddEvaluateVerb(CLI::App& app, Common& common) {
+  auto given = std::make_shared<EvaluateOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "evaluate",
+      "Example: tubetwin evaluate p.json --motions all --samples 3 --out scores.json\n\n"
+      "The evaluator alone: what lifting each tube would do to the others.");
+  verb->add_option("pile", given->pile, "pile.json, CSV or the public set's text")->required();
+  verb->add_option("--part", given->part, "Part name or part file");
+  verb->add_option("--bin", given->bin, "Inner size of the bin: long,short,wall in metres");
+  verb->add_option("--tube", given->tube, "Only this tube's candidates");
+  verb->add_option("--motions", given->motions, "Which candidates")
+      ->check(CLI::IsMember({"up", "escape", "all"}));
+  verb->add_option("--samples", given->samples, "Roll-outs per candidate")
+      ->check(CLI::Range(1, 1000));
+  verb->add_flag("--full", given->full, "Nothing pruned or cut short");
+  AddCommonOptions(*verb, common, "scores.json to write", true);
+  verb->callback([given, &common] {
+    common.action = [given, &common] { return EvaluatePile(*given, common); };
+  });
+}
+
+}  // namespace tubetwin

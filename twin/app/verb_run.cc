@@ -1,0 +1,152 @@
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/text.h"
+#include "twin/app/common.h"
+#include "twin/campaign/round.h"
+
+namespace tubetwin {
+namespace fs = std::filesystem;
+namespace {
+
+volatile std::sig_atomic_t g_stop = 0;  // Signal handlers may touch nothing else.
+
+/// "placed>=7": a number of summary.json and what it must be.
+struct Requirement {
+  std::string text, key, relation;
+  double value = 0.0;
+};
+
+Requirement ParseRequirement(const std::string& text) {
+  for (const char* relation : {">=", "<=", "==", ">", "<"}) {
+    const auto at = text.find(relation);
+    if (at == std::string::npos) continue;
+    Requirement out{text, text.substr(0, at), relation, 0.0};
+    const std::string number = text.substr(at + out.relation.size());
+    char* end = nullptr;
+    out.value = std::strtod(number.c_str(), &end);
+    if (!out.key.empty() && !number.empty() && *end == '\0') return out;
+  }
+  throw Error(ErrorKind::kUsage, "--require '" + text +
+                                     "': KEY>=VALUE is needed, for example 'placed>=7' (also <= == "
+                                     "> <; keys as in summary.json, first_attempt.k)");
+}
+
+bool Holds(const Requirement& wanted, const Json& summary) {
+  const Json* node = &summary;
+  std::string rest = wanted.key;
+  while (!rest.empty()) {
+    const auto dot = rest.find('.');
+    const std::string name = rest.substr(0, dot);
+    rest = dot == std::string::npos ? "" : rest.substr(dot + 1);
+    if (!node->is_object() || !node->contains(name)) {
+      std::vector<std::string> keys;
+      if (node->is_object()) {
+        for (const auto& [key, value] : node->items()) keys.push_back(key);
+      }
+      throw Error(ErrorKind::kUsage, "--require '" + wanted.text + "': summary.json has no '" +
+                                         name + "'; it has " + Join(keys));
+    }
+    node = &(*node)[name];
+  }
+  const double found = node->is_boolean()  ? (node->get<bool>() ? 1.0 : 0.0)
+                       : node->is_number() ? node->get<double>()
+                                           : std::nan("");
+  if (wanted.relation == ">=") return found >= wanted.value;
+  if (wanted.relation == "<=") return found <= wanted.value;
+  if (wanted.relation == "==") return found == wanted.value;
+  if (wanted.relation == ">") return found > wanted.value;
+  return found < wanted.value;
+}
+
+struct RunOptions {
+  std::string scenario, pile, part, bin, cell, profile;
+  std::vector<std::string> require;
+  bool video = false, force = false;
+};
+
+Scenario RunScenario(const RunOptions& run, const Common& common, std::string& folder) {
+  std::vector<std::string> files;
+  if (!run.scenario.empty()) files.push_back(run.scenario);
+  if (!run.cell.empty()) files.push_back(run.cell);
+  Scenario scenario = LoadScenario(files, common);
+  const fs::path parent = fs::path(run.scenario).parent_path();
+  folder = parent.empty() ? "." : parent.string();
+  if (!run.pile.empty()) scenario.pile.file = fs::absolute(run.pile).string();
+  if (!run.part.empty()) scenario.pile.part = run.part;
+  if (!run.bin.empty()) {
+    const auto size = ParseBinSize(run.bin);
+    scenario.bin.size_m.assign(size.begin(), size.end());
+  }
+  if (!run.profile.empty()) scenario.profile = run.profile;
+  return scenario;
+}
+
+int Run(const RunOptions& run, const Common& common) {
+  std::vector<Requirement> requirements;
+  for (const std::string& text : run.require) requirements.push_back(ParseRequirement(text));
+  RoundOptions options;
+  const Scenario scenario = RunScenario(run, common, options.scenario_folder);
+  options.out_folder = common.out;
+  options.parallelism = common.parallelism();
+  options.video = run.video;
+  options.force = run.force;
+  options.program_version = TUBETWIN_VERSION;
+  ProgressLine progress(!common.quiet);
+  options.progress = [&](const std::string& text) { progress.Show(text); };
+  std::signal(SIGTERM, [](int) { g_stop = 1; });
+  std::signal(SIGINT, [](int) { g_stop = 1; });
+  options.stop_requested = [] { return g_stop != 0; };
+  const RoundResult result = RunRound(scenario, options);
+
+  const Json& s = result.summary;
+  if (common.json) {
+    std::printf("%s\n", s.dump(2).c_str());
+  } else {
+    std::printf("placed %d of %d in %d attempts, first attempt %d of %d, end: %s (%s)\n",
+                s["placed"].get<int>(), s["tubes_start"].get<int>(), s["attempts"].get<int>(),
+                s["first_attempt"]["k"].get<int>(), s["first_attempt"]["n"].get<int>(),
+                s["end_reason"].get<std::string>().c_str(),
+                s["end_detail"].get<std::string>().c_str());
+  }
+  if (result.interrupted) return static_cast<int>(ErrorKind::kInterrupted);
+  int code = 0;
+  for (const Requirement& wanted : requirements) {
+    if (!Holds(wanted, s)) {
+      std::fprintf(stderr, "tubetwin: requirement '%s' does not hold\n", wanted.text.c_str());
+      code = 1;
+    }
+  }
+  return code;
+}
+
+}  // namespace
+
+void AddRunVerb(CLI::App& app, Common& common) {
+  auto run = std::make_shared<RunOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "run",
+      "Example: tubetwin run --pile A5_2.csv --bin 0.80,0.60,0.09 --seed 1 --out out/a5\n\n"
+      "Empties one bin and writes the result folder. With neither scenario nor pile: 7 pvc_a, "
+      "dropped.");
+  verb->add_option("scenario", run->scenario, "Scenario file (TOML)")->type_name("SCENARIO.toml");
+  verb->add_option("--pile", run->pile,
+                   "Pile to start from: pile.json, CSV or the public set's text");
+  verb->add_option("--part", run->part, "Part name or part file");
+  verb->add_option("--bin", run->bin, "Inner size of the bin: long,short,wall in metres");
+  verb->add_option("--cell", run->cell, "Cell file (TOML): which devices");
+  verb->add_option("--profile", run->profile, "Pipeline profile")->check(CLI::IsMember({"best"}));
+  verb->add_flag("--video", run->video, "Also draw video.mp4 and picture.png");
+  verb->add_option("--require", run->require,
+                   "Exit with 1 unless 'KEY>=VALUE' of summary.json holds")
+      ->allow_extra_args(false);
+  verb->add_flag("--force", run->force, "Replace the rows of another configuration");
+  AddCommonOptions(*verb, common, "Result folder", true);
+  verb->callback([run, &common] { common.action = [run, &common] { return Run(*run, common); }; });
+}
+
+}  // namespace tubetwin

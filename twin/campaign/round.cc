@@ -1,0 +1,190 @@
+#include "twin/campaign/round.h"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+#include "twin/campaign/report_html.h"
+#include "twin/campaign/result_files.h"
+#include "twin/campaign/scoring.h"
+#include "twin/cell/twin_cell.h"
+#include "twin/render/recording.h"
+
+namespace tubetwin {
+namespace fs = std::filesystem;
+namespace {
+
+double WallNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Follows one round: rows by truth, recording, failures. Lives as long as the round.
+class RoundRecorder : public CycleObserver {
+ public:
+  RoundRecorder(TwinCell& twin, const Pile& pile, const RoundOptions& options)
+      : twin_(twin), options_(options), scorer_(twin, static_cast<int>(pile.tubes.size())) {
+    recording_.cell_xml = twin.ModelXml();
+    recording_.bin = pile.bin;
+    twin.SetFrameObserver([this] { AddFrame(); });
+    attempt_began_ = WallNow();
+  }
+
+  void OnStep(const std::string& caption) override {
+    recording_.captions.push_back(caption);
+    if (options_.progress) {
+      options_.progress("attempt " + std::to_string(rows.size() + 1) + ": " + caption);
+    }
+  }
+
+  void OnScene(const TubeScene& scene, const PickPlan* plan) override {
+    Recording::Overlay overlay;
+    for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
+      overlay.lines_N.push_back(scene.tubes[i].centerline_N);
+      overlay.classes.push_back(static_cast<int>(scene.tubes[i].tube_class));
+      if (plan != nullptr && scene.tubes[i].id == plan->target)
+        overlay.target = static_cast<int>(i);
+    }
+    recording_.overlays.push_back(std::move(overlay));
+  }
+
+  void OnClouds(const std::vector<OrganizedCloud>& views) override { last_views_ = views; }
+  void OnReference(const Wrench& reference_K) override { reference_K_ = reference_K; }
+  void OnDetection(const Detection&) override { scorer_.AtDetection(); }
+
+  void OnAttemptEnd(const AttemptReport& report) override {
+    rows.push_back(scorer_.AttemptRow(report, 0));
+    const double now = WallNow();
+    timings.push_back(RoundScorer::TimingRow(report, 0, now - attempt_began_));
+    attempt_began_ = now;
+    if (!rows.back()["success"].get<bool>()) SaveFailure(report);
+    recording_.overlays.push_back({});  // What was seen is stale now.
+  }
+
+  Json Summary(const RoundReport& report) const {
+    return scorer_.Summary(report, Seconds(twin_.cell().clock.Now()));
+  }
+  const Recording& recording() const { return recording_; }
+
+  std::vector<Json> rows, timings;
+
+ private:
+  void AddFrame() {
+    Recording::Frame frame;
+    for (const double q : twin_.Qpos()) frame.qpos.push_back(static_cast<float>(q));
+    const Wrench load = twin_.cell().wrist.Read().wrench_K - reference_K_;
+    frame.force_N = static_cast<float>(load.force_N.z());
+    frame.overlay = static_cast<int>(recording_.overlays.size()) - 1;
+    frame.caption = static_cast<int>(recording_.captions.size()) - 1;
+    recording_.frames.push_back(std::move(frame));
+  }
+
+  void SaveFailure(const AttemptReport& report) {
+    char name[32];
+    std::snprintf(name, sizeof name, "attempt_%03d", static_cast<int>(rows.size()));
+    const std::string folder = (fs::path(options_.out_folder) / "failures" / name).string();
+    WriteJsonFile(rows.back(), folder + "/attempt.json");
+    SavePile(Truth(twin_).CurrentPile(), folder + "/state.pile.json");
+    for (std::size_t i = 0; i < last_views_.size(); ++i) {
+      WritePcd(last_views_[i], folder + "/view_" + std::to_string(i) + ".pcd");
+    }
+    (void)report;
+  }
+
+  TwinCell& twin_;
+  const RoundOptions& options_;
+  RoundScorer scorer_;
+  Recording recording_;
+  std::vector<OrganizedCloud> last_views_;
+  Wrench reference_K_;
+  double attempt_began_ = 0.0;
+};
+
+RoundPhysics PhysicsOf(const Scenario& scenario, const Part& part) {
+  if (!scenario.physics.randomize) return NominalPhysics(part);
+  return DrawPhysics(scenario.physics, part,
+                     RandomStream(static_cast<std::uint64_t>(scenario.seed), 0, "physics"));
+}
+
+PickCycleSetup CycleSetup(const Scenario& scenario, const Part& part, const RoundOptions& options) {
+  PickCycleSetup setup;
+  setup.part = part;
+  setup.perception = scenario.perception;
+  setup.planner = scenario.planner;
+  setup.scan = scenario.scan;
+  setup.resolution = scenario.resolution;
+  setup.cycle = scenario.cycle;
+  setup.seed = static_cast<std::uint64_t>(scenario.seed);
+  setup.evaluate = MakeEvaluator({options.parallelism, scenario.evaluator});
+  setup.parallelism = options.parallelism;
+  setup.stop_requested = options.stop_requested;
+  return setup;
+}
+
+Pile StartPile(const Scenario& scenario, const Pile& asked, const RoundPhysics& physics) {
+  if (asked.settled && scenario.pile.file.empty()) return asked;
+  const SettleResult settled = SettlePile(asked, physics);
+  if (settled.status == SettleStatus::kDiverged) {
+    throw Error(ErrorKind::kBadData,
+                scenario.pile.file + ": the pile does not settle: " + settled.reason);
+  }
+  return settled.pile;  // Escaped tubes are part of the truth: they will not be placed.
+}
+
+}  // namespace
+
+RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
+  const double began = WallNow();
+  Scenario scenario = given;
+  const Pile asked = ScenarioPile(scenario, options.scenario_folder);
+  const fs::path out(options.out_folder);
+  // A given pile is archived, so that the resolved configuration runs wherever the folder is moved.
+  const bool archive_pile = !scenario.pile.file.empty();
+  if (archive_pile) scenario.pile.file = "given.pile.json";
+  const std::string resolved = ResolvedToml(scenario);
+  ClaimResultFolder(options.out_folder, resolved, options.force);
+
+  const RoundPhysics physics = PhysicsOf(scenario, asked.part);
+  const Pile pile = StartPile(scenario, asked, physics);
+  if (archive_pile) SavePile(asked, (out / "given.pile.json").string());
+  SavePile(pile, (out / "start.pile.json").string());
+
+  TwinCellOptions cell_options;
+  cell_options.physics = physics;
+  cell_options.seed = static_cast<std::uint64_t>(scenario.seed);
+  if (scenario.scan.resolution == "2064x1544") {
+    cell_options.scan.width = cell_options.scan.spec.full_width;
+    cell_options.scan.height = cell_options.scan.spec.full_height;
+  }
+  cell_options.parallelism = options.parallelism;
+  TwinCell twin(pile, cell_options);
+  WriteFileAtomically((out / "cell.xml").string(), twin.ModelXml());
+  WriteFileAtomically((out / "config.resolved.toml").string(), resolved);
+  fs::remove_all(out / "failures");
+
+  RoundRecorder recorder(twin, pile, options);
+  const RoundReport report =
+      RunPickCycle(twin.cell(), CycleSetup(scenario, asked.part, options), recorder);
+
+  RoundResult result;
+  result.interrupted = report.end == RoundEnd::kInterrupted;
+  result.summary = recorder.Summary(report);
+  WriteJsonLines(recorder.rows, (out / "picks.jsonl").string());
+  WriteJsonLines(recorder.timings, (out / "timings.jsonl").string());
+  WriteJsonFile(result.summary, (out / "summary.json").string());
+  WriteRecording(recorder.recording(), (out / "recording.bin").string());
+  const double cycle_wall_s = WallNow() - began;
+  if (options.video) {
+    if (options.progress) options.progress("drawing the film");
+    RenderPicture(recorder.recording(), 0, (out / "picture.png").string());
+    RenderFilm(recorder.recording(), (out / "video.mp4").string(), 1, options.parallelism);
+  }
+  WriteReport(result.summary, recorder.rows, options.out_folder);
+  WriteJsonFile(Manifest(scenario, resolved, options.program_version, options.parallelism.threads,
+                         cycle_wall_s),
+                (out / "manifest.json").string());
+  return result;
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,93 @@
+#include "twin/campaign/scenario.h"
+
+#include <filesystem>
+
+#include "hw_bridge/base/error.h"
+
+namespace tubetwin {
+
+void Scenario::PileChoice::Visit(ConfigVisitor& v) {
+  v.Field("file", "pile to start from (pile.json, CSV or the public set's text); empty: generate",
+          file);
+  v.Field("part", "part name or part file; empty: what the pile file says, else pvc_a", part);
+  v.Field("count", "tubes to generate", count, {1, 40});
+  v.Choice("arrangement", "how generated tubes are laid", arrangement,
+           {"dropped", "stirred", "threaded"});
+}
+
+void Scenario::BinChoice::Visit(ConfigVisitor& v) {
+  v.Field("size_m", "long, short, wall height in metres; empty: the pile's, else 0.77 0.58 0.09",
+          size_m, 0, {0.01, 3.0});
+  v.Field("X_BN", "floor centre x y z in metres and yaw in degrees, in the robot's base", X_BN, 4);
+}
+
+void Scenario::CellChoice::Device::Visit(ConfigVisitor& v) {
+  v.Choice("driver", "which device serves this role", driver, {"twin"});
+}
+
+void Scenario::CellChoice::Visit(ConfigVisitor& v) {
+  v.Section("arm", "the arm", arm);
+  v.Section("gripper", "the gripper", gripper);
+  v.Section("wrist", "the force/torque sensor", wrist);
+  v.Section("scanner", "the scanner", scanner);
+}
+
+void Scenario::Visit(ConfigVisitor& v) {
+  v.Field("seed", "seed of everything random in the round", seed, {0, 9007199254740991.0});
+  v.Choice("profile", "pipeline profile", profile, {"best"});
+  v.Section("pile", "what lies in the bin", pile);
+  v.Section("bin", "the bin", bin);
+  v.Section("physics", "ranges that the round's physics is drawn from", physics);
+  v.Section("scan", "looking into the bin", scan);
+  v.Section("perception", "modelling tubes", perception);
+  v.Section("planner", "motions, grasps, choice", planner);
+  v.Section("evaluator", "physics roll-outs inside the planner", evaluator);
+  v.Section("resolution", "when several tubes hang in the fingers", resolution);
+  v.Section("cycle", "speeds, forces and waits of the pick cycle", cycle);
+  v.Section("cell", "which devices", cell);
+}
+
+Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m) {
+  Bin bin;
+  bin.size_m = pile_size_m;
+  if (!scenario.bin.size_m.empty()) {
+    if (scenario.bin.size_m.size() != 3) {
+      throw Error(ErrorKind::kConfig,
+                  "bin.size_m: three numbers are needed (long, short, wall), found " +
+                      std::to_string(scenario.bin.size_m.size()));
+    }
+    for (int i = 0; i < 3; ++i) bin.size_m[i] = scenario.bin.size_m[i];
+  }
+  const auto& x = scenario.bin.X_BN;
+  bin.X_BN = MakeTransform(RotZ(Radians(x[3])), Vector3(x[0], x[1], x[2]));
+  return bin;
+}
+
+Pile ScenarioPile(const Scenario& scenario, const std::string& folder) {
+  if (!scenario.pile.file.empty()) {
+    std::filesystem::path file(scenario.pile.file);
+    if (file.is_relative()) file = std::filesystem::path(folder) / file;
+    PileOverrides overrides;
+    if (!scenario.pile.part.empty()) overrides.part = scenario.pile.part;
+    if (!scenario.bin.size_m.empty()) overrides.bin_size_m = ScenarioBin(scenario, {}).size_m;
+    Pile pile = LoadPile(file.string(), overrides);
+    pile.bin = ScenarioBin(scenario, pile.bin.size_m);
+    return pile;
+  }
+  const Part part = LoadPart(scenario.pile.part.empty() ? "pvc_a" : scenario.pile.part);
+  const Bin bin = ScenarioBin(scenario, Bin().size_m);
+  const RoundPhysics physics =
+      scenario.physics.randomize
+          ? DrawPhysics(scenario.physics, part,
+                        RandomStream(static_cast<std::uint64_t>(scenario.seed), 0, "physics"))
+          : NominalPhysics(part);
+  SettleResult made = GeneratePile(part, bin, scenario.pile.count, scenario.pile.arrangement,
+                                   static_cast<std::uint64_t>(scenario.seed), physics);
+  if (made.status != SettleStatus::kSettled) {
+    throw Error(ErrorKind::kInternal, std::string("no settled pile could be generated: ") +
+                                          ToString(made.status) + ", " + made.reason);
+  }
+  return std::move(made.pile);
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "hw_bridge/base/config.h"
+#include "models/physics.h"
+#include "planner/evaluator/evaluator.h"
+#include "planner/pick_cycle.h"
+#include "scenes/pile.h"
+
+namespace tubetwin {
+
+/// One round, completely: what lies in the bin, what the cell is like, how the pipeline works.
+/// Defaults < files < overrides; the resolved scenario is archived beside the results.
+struct Scenario {
+  std::int64_t seed = 1;
+  std::string profile = "best";
+
+  struct PileChoice {
+    std::string file;  ///< Empty: generate. Relative to the scenario file.
+    std::string part;  ///< Empty: what the file says, else pvc_a.
+    int count = 7;
+    std::string arrangement = "dropped";
+    void Visit(ConfigVisitor& v);
+  } pile;
+
+  struct BinChoice {
+    std::vector<double> size_m;  ///< Empty: what the pile file says, else 0.77 x 0.58 x 0.09.
+    std::vector<double> X_BN = {0.60, 0.0, 0.10, 90.0};  ///< x, y, z in metres, yaw in degrees.
+    void Visit(ConfigVisitor& v);
+  } bin;
+
+  PhysicsRanges physics;
+  ScanConfig scan;
+  PerceptionConfig perception;
+  PlannerConfig planner;
+  EvaluatorConfig evaluator;
+  ResolutionConfig resolution;
+  CycleConfig cycle;
+
+  /// Device choice, table [cell.*]. This program has the twin's drivers.
+  struct CellChoice {
+    struct Device {
+      std::string driver = "twin";
+      void Visit(ConfigVisitor& v);
+    } arm, gripper, wrist, scanner;
+    void Visit(ConfigVisitor& v);
+  } cell;
+
+  void Visit(ConfigVisitor& v);
+};
+
+/// The bin of the scenario for a pile that says `pile_size_m`.
+Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m);
+
+/// The pile that the scenario asks for, not yet settled when it comes from a file; generated ones
+/// are. `folder`: what relative file names refer to. Throws as LoadPile and GeneratePile do, and
+/// Error(kInternal) when no settled pile could be generated.
+Pile ScenarioPile(const Scenario& scenario, const std::string& folder);
+
+}  // namespace tubetwin

@@ -1,0 +1,138 @@
+#include "twin/campaign/scoring.h"
+
+#include <algorithm>
+
+#include "planner/placement.h"
+#include "twin/campaign/wilson.h"
+
+namespace tubetwin {
+namespace {
+
+Json DetectionJson(const std::optional<Detection>& detection) {
+  if (!detection) return nullptr;
+  return Json{{"outcome", ToString(detection->outcome)},
+              {"force_N", detection->force_N},
+              {"torque_Nm", ToJson(detection->torque_Nm)},
+              {"at_s", detection->at_s}};
+}
+
+Json GraspJson(const PickPlan& plan) {
+  Json out = ToJson(plan.grasp.X_NG);
+  out["at_m"] = plan.grasp.at_m;
+  out["opening_m"] = plan.grasp.opening_m;
+  return out;
+}
+
+Json MotionJson(const PickPlan& plan) {
+  return Json{{"name", plan.motion.name}, {"waypoints_m", ToJson(plan.motion.waypoints_N)}};
+}
+
+/// Angle between a tube and the tray's y axis, ends being equal, degrees.
+double YawErrorDeg(const Vector3& direction_T) {
+  const double angle = std::atan2(std::abs(direction_T.x()), std::abs(direction_T.y()));
+  return Degrees(angle);
+}
+
+}  // namespace
+
+RoundScorer::RoundScorer(const TwinCell& cell, int tubes_start)
+    : truth_(cell), tubes_start_(tubes_start) {}
+
+void RoundScorer::AtDetection() { held_at_detection_ = truth_.Held(); }
+
+Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
+  // Placed: at rest over the tray, no part over the bin or in the gripper.
+  constexpr double kAtRest_m_s = 0.02;  // The physics' own creep stays far below.
+  std::vector<int> placed, outside;
+  const CellLayout layout;
+  Json error_mm = nullptr, error_deg = nullptr;
+  for (const Truth::Tube& tube : truth_.Tubes()) {
+    const bool placed_now = tube.over_tray && !tube.over_bin && !tube.touches_pads && !tube.hangs &&
+                            tube.speed_m_s < kAtRest_m_s;
+    if (placed_now) placed.push_back(tube.id);
+    if (tube.outside) outside.push_back(tube.id);
+    const bool is_new = placed_now && std::find(placed_ids_.begin(), placed_ids_.end(), tube.id) ==
+                                          placed_ids_.end();
+    if (is_new && report.slot_centre_T) {
+      const RigidTransform X_TB = layout.X_BT.inverse();
+      const Vector3 off = X_TB * tube.centre_of_mass_B - *report.slot_centre_T;
+      error_mm = 1e3 * off.head<2>().norm();
+      error_deg = YawErrorDeg(PrincipalDirection(Transformed(X_TB, tube.centerline_B)));
+    }
+  }
+  const int added = static_cast<int>(placed.size()) - static_cast<int>(placed_ids_.size());
+  const bool new_outside = outside.size() > outside_ids_.size();
+  const bool success = report.outcome == AttemptOutcome::kPlaced && added == 1 && !new_outside;
+  placed_ids_ = placed;
+  outside_ids_ = outside;
+
+  Json row;
+  row["round"] = round;
+  row["attempt"] = report.attempt;
+  row["tubes_in_bin"] = report.tubes_in_bin;
+  row["target"] = report.plan ? Json(report.plan->target) : Json(nullptr);
+  row["class"] = report.plan ? Json(ToString(report.plan->target_class)) : Json(nullptr);
+  row["motion"] = report.plan ? MotionJson(*report.plan) : Json(nullptr);
+  row["grasp"] = report.plan ? GraspJson(*report.plan) : Json(nullptr);
+  row["used_simulator"] = report.plan ? report.plan->used_simulator : false;
+  row["detection"] = DetectionJson(report.detection);
+  row["resolution"] =
+      Json{{"used", report.resolution_used},
+           {"strategy", report.resolution_used ? Json(ToString(report.strategy)) : Json(nullptr)},
+           {"outcome", report.resolution_outcome ? Json(ToString(*report.resolution_outcome))
+                                                 : Json(nullptr)}};
+  row["outcome"] = ToString(report.outcome);
+  row["reason"] = report.reason;
+  row["success"] = success;
+  row["sim_s"] = Json{{"scan", report.sim_s.scan},
+                      {"move", report.sim_s.move},
+                      {"weigh", report.sim_s.weigh},
+                      {"settle", report.sim_s.settle},
+                      {"total", report.sim_s.total()}};
+  row["truth"] = Json{{"held", report.detection ? Json(held_at_detection_) : Json(nullptr)},
+                      {"placed_ids", placed_ids_},
+                      {"outside_ids", outside_ids_},
+                      {"placement_error_mm", error_mm},
+                      {"placement_error_deg", error_deg}};
+  ++attempts_;
+  successes_ += success;
+  if (success && report.attempt == 1) ++first_attempts_placed_;
+  if (success) ++picks_placed_;
+  if (report.outcome == AttemptOutcome::kDropped) ++dropped_;
+  rows_.push_back(row);
+  return row;
+}
+
+Json RoundScorer::TimingRow(const AttemptReport& report, int round, double wall_s) {
+  return Json{{"round", round},
+              {"attempt", report.attempt},
+              {"compute_s", Json{{"modelling", report.compute_s.modelling},
+                                 {"planning", report.compute_s.planning},
+                                 {"evaluator", report.compute_s.evaluator},
+                                 {"total", report.compute_s.total}}},
+              {"wall_s", wall_s}};
+}
+
+Json RoundScorer::Summary(const RoundReport& report, double sim_s) const {
+  const int placed = static_cast<int>(placed_ids_.size());
+  const auto interval = Wilson95(first_attempts_placed_, picks_placed_);
+  Json out;
+  out["schema"] = "tubetwin/summary/1";
+  out["tubes_start"] = tubes_start_;
+  out["placed"] = placed;
+  out["attempts"] = attempts_;
+  out["first_attempt"] = Json{{"k", first_attempts_placed_},
+                              {"n", picks_placed_},
+                              {"wilson95", Json::array({interval.low, interval.high})}};
+  out["emptied"] = placed == tubes_start_;
+  out["end_reason"] = ToString(report.end);
+  out["end_detail"] = report.reason;
+  out["placed_believed"] = report.placed_believed;
+  out["outside"] = outside_ids_.size();
+  out["dropped"] = dropped_;
+  out["sim_s"] = sim_s;
+  out["sim_s_per_pick"] = picks_placed_ > 0 ? Json(sim_s / picks_placed_) : Json(nullptr);
+  return out;
+}
+
+}  // namespace tubetwin

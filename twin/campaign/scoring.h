@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "hw_bridge/base/json.h"
+#include "planner/cycle_report.h"
+#include "twin/cell/truth.h"
+
+namespace tubetwin {
+
+/// Scores attempts by truth while a round runs. The one place, with the round itself, that sees
+/// truth.
+class RoundScorer {
+ public:
+  RoundScorer(const TwinCell& cell, int tubes_start);
+
+  /// At the decision how many tubes hang in the fingers.
+  void AtDetection();
+  /// At the end of an attempt (at least one second after a release): its row for picks.jsonl.
+  Json AttemptRow(const AttemptReport& report, int round);
+  /// Row for timings.jsonl.
+  static Json TimingRow(const AttemptReport& report, int round, double wall_s);
+  /// Content of summary.json after the last attempt.
+  Json Summary(const RoundReport& report, double sim_s) const;
+
+ private:
+  Truth truth_;
+  int tubes_start_ = 0;
+  int held_at_detection_ = 0;
+  std::vector<int> placed_ids_, outside_ids_;
+  int attempts_ = 0, successes_ = 0;
+  int first_attempts_placed_ = 0;  ///< Placed by truth at attempt 1.
+  int picks_placed_ = 0;           ///< Attempts that placed exactly one, by truth.
+  int dropped_ = 0;
+  std::vector<Json> rows_;
+};
+
+}  // namespace tubetwin
