@@ -37,7 +37,9 @@ void FindKey(const Entry& entry, const std::string& key, const std::string& path
 
 void CheckKeysKnown(const Node::Table& table, const Entry& entry, const Entry& root,
                     const std::string& path) {
-  for (const auto& [key, node] : table) {
+  for (const Node::Member& member : table) {
+    const std::string& key = member.key;
+    const Node& node = member.node;
     const auto known = std::find_if(entry.children.begin(), entry.children.end(),
                                     [&](const Entry& child) { return child.key == key; });
     if (known == entry.children.end()) {

@@ -23,7 +23,7 @@ Node::Table TableFromToml(const toml::table& in, const std::string& file) {
   for (const auto& [key, value] : in) {
     Node node = FromToml(value, file);
     node.key_place = Place(file, key.source());
-    out.emplace_back(std::string(key.str()), std::move(node));
+    out.push_back({std::string(key.str()), std::move(node)});
   }
   return out;
 }
@@ -89,7 +89,7 @@ void Merge(Node::Table& below, Node::Table top) {
   for (auto& [key, node] : top) {
     Node* old = const_cast<Node*>(Find(below, key));
     if (old == nullptr) {
-      below.emplace_back(key, std::move(node));
+      below.push_back({key, std::move(node)});
     } else if (auto* table = std::get_if<Node::Table>(&node.value);
                table != nullptr && std::holds_alternative<Node::Table>(old->value)) {
       Merge(std::get<Node::Table>(old->value), std::move(*table));
@@ -134,12 +134,14 @@ Node::Table ParseOverride(const std::string& text) {
   node.from_override = true;
   for (std::size_t i = keys.size(); i-- > 1;) {
     Node table;
-    table.value = Node::Table{{keys[i], std::move(node)}};
+    Node::Table one;
+    one.push_back({keys[i], std::move(node)});
+    table.value = std::move(one);
     table.place = table.key_place = place;
     node = std::move(table);
   }
   Node::Table layer;
-  layer.emplace_back(keys.front(), std::move(node));
+  layer.push_back({keys.front(), std::move(node)});
   return layer;
 }
 

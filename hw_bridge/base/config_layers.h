@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -14,13 +13,19 @@ struct Node {
   struct Unsupported {
     std::string what;
   };
-  using Table = std::vector<std::pair<std::string, Node>>;
+  struct Member;
+  using Table = std::vector<Member>;  ///< In the order in which the keys appeared.
   std::variant<bool, std::int64_t, double, std::string, std::vector<Node>, Table, Unsupported>
       value;
   std::string place;      ///< "file:line:column", or "--set a.b=value".
   std::string key_place;  ///< Of the key, where that differs.
   std::string raw;        ///< What a person typed after `--set a.b=`; empty for files.
   bool from_override = false;
+};
+
+struct Node::Member {
+  std::string key;
+  Node node;
 };
 
 const Node* Find(const Node::Table& table, const std::string& key);
