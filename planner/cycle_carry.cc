@@ -13,7 +13,7 @@ constexpr double kWeakTorque_Nm = 0.02;    ///< Below, the torque axis is arbitr
 constexpr double kPlaceGap_m = 0.003;      ///< E stops this far above touching the tray.
 constexpr double kAbovePlace_m = 0.20;     ///< Last weighing: above all that lies on the tray.
 constexpr double kGuardedPlace_m = 0.035;  ///< From here on what lies on the tray may be met.
-constexpr double kTruthDelay_s = 1.0;      ///< Placed counts one second after release.
+constexpr double kTruthDelay_s = 2.0;      ///< A hose that lay on others rocks before it rests.
 
 void Open(CycleContext& c) {
   GripperCommand open;
