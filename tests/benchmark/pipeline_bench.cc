@@ -1,0 +1,121 @@
+// What one pick costs, stage by stage, on the seven pvc_a tubes of `run --seed 1`.
+// ./dev bench runs it; the tests run each benchmark once so that none rots.
+
+#include <benchmark/benchmark.h>
+
+#include "hw_bridge/base/random.h"
+#include "models/arm.h"
+#include "models/layout.h"
+#include "perception/perceive.h"
+#include "planner/evaluator/evaluator.h"
+#include "planner/motions.h"
+#include "scenes/pile.h"
+#include "twin/cell/twin_cell.h"
+
+namespace tubetwin {
+namespace {
+
+const Pile& SevenTubes() {
+  static const Pile pile = [] {
+    const Part part = LoadPart("pvc_a");
+    return GeneratePile(part, Bin(), 7, "dropped", 1, NominalPhysics(part)).pile;
+  }();
+  return pile;
+}
+
+ScanGeometry Geometry() {
+  ScanGeometry out;
+  for (const PileTube& tube : SevenTubes().tubes) {
+    const Polyline line_B = Transformed(SevenTubes().bin.X_BN, tube.centerline_N);
+    for (std::size_t i = 1; i < line_B.size(); ++i) {
+      out.capsules.push_back({line_B[i - 1], line_B[i], tube.radius_m, kLabelFirstTube, 0.7f});
+    }
+  }
+  const Vector3 half(0.5, 0.5, 0.01);
+  out.boxes.push_back({SevenTubes().bin.X_BN * Translation(0, 0, -0.01), half, kLabelCell, 0.5f});
+  return out;
+}
+
+TubeScene Scene() {
+  TubeScene scene;
+  for (const PileTube& tube : SevenTubes().tubes) {
+    PerceivedTube seen;
+    seen.id = tube.id;
+    seen.centerline_N = tube.centerline_N;
+    seen.radius_m = tube.radius_m;
+    seen.length_m = Length(tube.centerline_N);
+    seen.confidence = seen.visible_fraction = 1.0;
+    scene.tubes.push_back(std::move(seen));
+  }
+  AssignClasses(scene, SevenTubes().part.radius_m);
+  return scene;
+}
+
+/// One view; argument: 1 for 2064 x 1544, 0 for 1032 x 772. All cores.
+void BM_Scan(benchmark::State& state) {
+  ScanSettings settings;
+  if (state.range(0) == 1) {
+    settings.width = settings.spec.full_width;
+    settings.height = settings.spec.full_height;
+  }
+  const ScanGeometry geometry = Geometry();
+  const RigidTransform X_BS = DefaultScanPoses(SevenTubes().bin)[1];
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        CastScan(geometry, X_BS, settings, RandomStream(1, 0, "bench"), Parallelism::All()));
+  }
+}
+BENCHMARK(BM_Scan)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Eight views of 1032 x 772 to tubes and crossings. All cores.
+void BM_Perceive(benchmark::State& state) {
+  std::vector<OrganizedCloud> views;
+  const Bin bin = SevenTubes().bin;
+  for (const RigidTransform& X_BS : DefaultScanPoses(bin)) {
+    views.push_back(
+        CastScan(Geometry(), X_BS, {}, RandomStream(1, views.size(), "bench"), Parallelism::All()));
+    views.back().X_NS = bin.X_BN.inverse() * X_BS;
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(Perceive(views, SevenTubes().part, bin, {}, Parallelism::All()));
+  }
+}
+BENCHMARK(BM_Perceive)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Straight lifts of all seven tubes, nothing pruned or cut short; items are roll-outs. All cores.
+void BM_EvaluateFull(benchmark::State& state) {
+  const TubeScene scene = Scene();
+  EvaluationRequest request;
+  request.full = true;
+  for (const PerceivedTube& tube : scene.tubes) {
+    request.candidates.push_back(UpMotion(tube, {}));
+    request.grasp_at_m.push_back(0.5 * tube.length_m);
+  }
+  const EvaluateFunction evaluate = MakeEvaluator({Parallelism::All(), {}});
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(evaluate(scene, SevenTubes().part, SevenTubes().bin, request));
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scene.tubes.size()));
+}
+BENCHMARK(BM_EvaluateFull)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// All branches of the arm's inverse kinematics at one pose.
+void BM_InverseAll(benchmark::State& state) {
+  const RigidTransform X_BF = MakeTransform(RotZ(0.3) * RotX(kPi - 0.2), Vector3(0.6, -0.1, 0.4));
+  for (auto _ : state) benchmark::DoNotOptimize(InverseAll(Hc10(), X_BF));
+}
+BENCHMARK(BM_InverseAll)->Unit(benchmark::kMicrosecond);
+
+/// One second of the whole cell standing still with seven tubes, one core.
+void BM_CellSecond(benchmark::State& state) {
+  TwinCellOptions options;
+  options.physics = NominalPhysics(SevenTubes().part);
+  TwinCell twin(SevenTubes(), options);
+  for (auto _ : state) twin.cell().clock.AdvanceTo(twin.cell().clock.Now() + FromSeconds(1.0));
+}
+BENCHMARK(BM_CellSecond)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace tubetwin
+
+BENCHMARK_MAIN();
