@@ -122,8 +122,15 @@ void PutBack(CycleContext& c) {
 
 AttemptOutcome Place(CycleContext& c, const Polyline& line_E) {
   const CycleConfig& speeds = c.setup.cycle;
-  const PlacementPose pose = PlanPlacement(c.cell.layout, line_E, c.setup.part.radius_m, c.placed_T,
-                                           ToolYaw(c.mover.X_BE().linear()));
+  const std::optional<PlacementPose> found =
+      PlanPlacement(c.cell.layout, line_E, c.setup.part.radius_m, c.placed_T,
+                    ToolYaw(c.mover.X_BE().linear()), [&](RigidTransform X_BE) {
+                      if (!c.mover.Reaches(X_BE)) return false;
+                      X_BE.translation().z() += kAbovePlace_m;
+                      return c.mover.Reaches(X_BE);
+                    });
+  if (!found) throw MoveFailure(MoveFailure::Kind::kRejected, "no slot of the tray is in reach");
+  const PlacementPose& pose = *found;
   RigidTransform X_BE = pose.X_BE;
   X_BE.translation().z() += kAbovePlace_m;
   {

@@ -8,7 +8,7 @@ namespace {
 /// Two tubes nearer than this may hand a motion on to one another.
 constexpr double kTouchMargin_m = 0.010;
 /// Half field of view of the scanner as tangents, with room for what a tube may have moved.
-constexpr double kFieldX = 0.5 * 2064.0 / 2534.0 + 0.03, kFieldY = 0.5 * 1544.0 / 2534.0 + 0.03;
+constexpr double kFieldX = 0.5 * 2064.0 / 2534.0 + 0.12, kFieldY = 0.5 * 1544.0 / 2534.0 + 0.12;
 
 }  // namespace
 

@@ -17,6 +17,10 @@ RigidTransform Mover::X_BE() const { return planner_.PoseOfE(q_); }
 
 JointVector Mover::q() const { return q_; }
 
+bool Mover::Reaches(const RigidTransform& X_BE) const {
+  return planner_.Reach(X_BE, q_[5]).has_value();
+}
+
 JointVector Mover::Start() {
   // Something may have pushed the arm off where the last motion ended: go on from where it is.
   const JointVector measured = cell_.arm.State().q;

@@ -48,6 +48,9 @@ class Mover {
 
   const MotionPlanner& planner() const { return planner_; }
 
+  /// Whether the arm can put E there, tool pointing down.
+  bool Reaches(const RigidTransform& X_BE) const;
+
   /// Opening of the pads from now on, for the clearance of the fingers.
   void SetOpening(double opening_m) { opening_m_ = opening_m; }
 

@@ -40,6 +40,7 @@ class Round {
     if (outcome == AttemptOutcome::kPlaced) {
       attempt_ = 1;
       failed_.clear();
+      expected_ = c_.report.tubes_in_bin - 1;
       looker_.MarkAround(c_.report.plan->target);
     } else {
       ++attempt_;
@@ -51,11 +52,14 @@ class Round {
   const TubeScene& LookSurely() {
     c_.observer.OnStep("scanning");
     const TubeScene* scene = &looker_.Look();
-    if (scene->tubes.empty() && !looker_.all_fresh()) {
+    // More than can be left is what an old view still shows of a tube that is gone.
+    const bool too_many = expected_ >= 0 && static_cast<int>(scene->tubes.size()) > expected_;
+    if ((scene->tubes.empty() || too_many) && !looker_.all_fresh()) {
       looker_.MarkAll();
       scene = &looker_.Look();
     }
     c_.report.tubes_in_bin = static_cast<int>(scene->tubes.size());
+    expected_ = -1;
     if (first_count_ < 0) first_count_ = c_.report.tubes_in_bin;
     return *scene;
   }
@@ -282,6 +286,7 @@ class Round {
   int attempt_ = 1;
   int attempts_ = 0;
   int first_count_ = -1;
+  int expected_ = -1;  ///< Tubes that the next look should find at most; -1: no saying.
   int recoveries_ = 0;
 };
 

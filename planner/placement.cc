@@ -95,8 +95,10 @@ double Room(const Polyline& line_T, const std::vector<Polyline>& placed_T) {
 
 }  // namespace
 
-PlacementPose PlanPlacement(const CellLayout& layout, const Polyline& line_E, double radius_m,
-                            const std::vector<Polyline>& placed_T, double yaw_near_rad) {
+std::optional<PlacementPose> PlanPlacement(
+    const CellLayout& layout, const Polyline& line_E, double radius_m,
+    const std::vector<Polyline>& placed_T, double yaw_near_rad,
+    const std::function<bool(const RigidTransform& X_BE)>& reachable) {
   // Yaw that turns the tube's direction along the tray's y.
   const Vector3 direction_E = PrincipalDirection(line_E);
   const Vector3 direction_0 = VerticalTool(0.0) * direction_E;
@@ -110,14 +112,14 @@ PlacementPose PlanPlacement(const CellLayout& layout, const Polyline& line_E, do
     high = std::max(high, p.y());
   }
   const std::vector<Vector3> slots = Slots(layout, high - low + 2.0 * radius_m);
-  PlacementPose best;
+  std::optional<PlacementPose> best;
   double best_score = -1e9;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     for (const double candidate : {yaw, other_yaw}) {
       PlacementPose pose = PoseAt(layout, line_E, radius_m, placed_T, slots[i], candidate);
       pose.slot = static_cast<int>(i);
       const double score = Room(pose.line_T, placed_T) - pose.raised_m;
-      if (score > best_score + 1e-9) {
+      if (score > best_score + 1e-9 && reachable(pose.X_BE)) {
         best_score = score;
         best = std::move(pose);
       }

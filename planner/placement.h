@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "hw_bridge/base/frames.h"
@@ -30,8 +32,11 @@ std::vector<Vector3> Slots(const CellLayout& layout, double extent_y_m);
 /// farthest from those that lie already (`placed_T`), then the smaller slot, then the smaller turn
 /// from `yaw_near_rad`. Its direction lies along the tray's y, its centre on the slot's centre as
 /// far as E stays in its zone. `line_E`: the held tube's centerline relative to E; tool vertical.
-PlacementPose PlanPlacement(const CellLayout& layout, const Polyline& line_E, double radius_m,
-                            const std::vector<Polyline>& placed_T, double yaw_near_rad);
+/// `reachable` says which poses of E the arm can take; nothing when it can take none.
+std::optional<PlacementPose> PlanPlacement(
+    const CellLayout& layout, const Polyline& line_E, double radius_m,
+    const std::vector<Polyline>& placed_T, double yaw_near_rad,
+    const std::function<bool(const RigidTransform& X_BE)>& reachable);
 
 /// Yaw of a vertical tool: angle of E's x axis about B's z, with E's z pointing down.
 double ToolYaw(const Matrix3& R_BE);

@@ -6,6 +6,8 @@
 namespace tubetwin {
 namespace {
 
+bool Anywhere(const RigidTransform&) { return true; }
+
 constexpr double kExact = 1e-9;  // Closed form, double precision.
 
 TEST_CASE("A straight tube's principal direction is its axis", "[unit]") {
@@ -34,7 +36,7 @@ TEST_CASE("A laid tube lies in its slot, along the tray, on the surface", "[unit
     const Vector3 axis(std::cos(yaw), std::sin(yaw), 0.0);
     const Polyline line_E = {(off - 0.25) * axis, (off + 0.25) * axis};
     const double near = stream.Uniform(-kPi, kPi);
-    const PlacementPose pose = PlanPlacement(layout, line_E, radius_m, {}, near);
+    const PlacementPose pose = PlanPlacement(layout, line_E, radius_m, {}, near, Anywhere).value();
     const Polyline line_T = Transformed(layout.X_BT.inverse() * pose.X_BE, line_E);
     const Vector3 direction = (line_T[1] - line_T[0]).normalized();
     CHECK(std::abs(direction.x()) < 1e-9);
@@ -62,7 +64,8 @@ TEST_CASE("Straight tubes are laid side by side without touching until the tray 
   const Polyline line_E = {Vector3(-0.24, 0, 0), Vector3(0.24, 0, 0)};
   std::vector<Polyline> placed;
   for (int i = 0; i < 9; ++i) {
-    const PlacementPose pose = PlanPlacement(layout, line_E, radius_m, placed, 0.0);
+    const PlacementPose pose =
+        PlanPlacement(layout, line_E, radius_m, placed, 0.0, Anywhere).value();
     for (const Polyline& other : placed) {
       if (i < 8) CHECK(ClosestOfLines(pose.line_T, other).distance_m > 2 * radius_m);
     }
@@ -70,6 +73,18 @@ TEST_CASE("Straight tubes are laid side by side without touching until the tray 
     CHECK(pose.raised_m == Approx(i < 8 ? 0.0 : 2 * radius_m).margin(1e-6));
     placed.push_back(pose.line_T);
   }
+}
+
+TEST_CASE("A slot out of the arm's reach is not offered", "[unit]") {
+  const CellLayout layout;
+  const Polyline line_E = {Vector3(-0.24, 0, 0), Vector3(0.24, 0, 0)};
+  const double middle_x = layout.X_BT.translation().x();
+  const auto right_half = [&](const RigidTransform& X_BE) {
+    return X_BE.translation().x() > middle_x;
+  };
+  CHECK(PlanPlacement(layout, line_E, 0.0125, {}, 0.0, right_half)->slot_centre_T.x() > 0.0);
+  const auto nowhere = [](const RigidTransform&) { return false; };
+  CHECK_FALSE(PlanPlacement(layout, line_E, 0.0125, {}, 0.0, nowhere).has_value());
 }
 
 }  // namespace

@@ -50,7 +50,10 @@ class RoundRecorder : public CycleObserver {
   }
 
   void OnClouds(const std::vector<OrganizedCloud>& views) override { last_views_ = views; }
-  void OnReference(const Wrench& reference_K) override { reference_K_ = reference_K; }
+  void OnReference(const Wrench& reference_K) override {
+    reference_K_ = reference_K;
+    tared_ = true;
+  }
   void OnDetection(const Detection&) override { scorer_.AtDetection(); }
 
   void OnAttemptEnd(const AttemptReport& report) override {
@@ -58,7 +61,7 @@ class RoundRecorder : public CycleObserver {
     const double now = WallNow();
     timings.push_back(RoundScorer::TimingRow(report, 0, now - attempt_began_));
     attempt_began_ = now;
-    if (!rows.back()["success"].get<bool>()) SaveFailure(report);
+    if (!rows.back()["success"].get<bool>()) SaveFailure();
     recording_.overlays.push_back({});  // What was seen is stale now.
   }
 
@@ -73,14 +76,16 @@ class RoundRecorder : public CycleObserver {
   void AddFrame() {
     Recording::Frame frame;
     for (const double q : twin_.Qpos()) frame.qpos.push_back(static_cast<float>(q));
-    const Wrench load = twin_.cell().wrist.Read().wrench_K - reference_K_;
-    frame.force_N = static_cast<float>(load.force_N.z());
+    if (tared_) {
+      const Wrench load = twin_.cell().wrist.Read().wrench_K - reference_K_;
+      frame.force_N = static_cast<float>(load.force_N.z());
+    }
     frame.overlay = static_cast<int>(recording_.overlays.size()) - 1;
     frame.caption = static_cast<int>(recording_.captions.size()) - 1;
     recording_.frames.push_back(std::move(frame));
   }
 
-  void SaveFailure(const AttemptReport& report) {
+  void SaveFailure() {
     char name[32];
     std::snprintf(name, sizeof name, "attempt_%03d", static_cast<int>(rows.size()));
     const std::string folder = (fs::path(options_.out_folder) / "failures" / name).string();
@@ -89,7 +94,6 @@ class RoundRecorder : public CycleObserver {
     for (std::size_t i = 0; i < last_views_.size(); ++i) {
       WritePcd(last_views_[i], folder + "/view_" + std::to_string(i) + ".pcd");
     }
-    (void)report;
   }
 
   TwinCell& twin_;
@@ -98,6 +102,7 @@ class RoundRecorder : public CycleObserver {
   Recording recording_;
   std::vector<OrganizedCloud> last_views_;
   Wrench reference_K_;
+  bool tared_ = false;
   double attempt_began_ = 0.0;
 };
 
