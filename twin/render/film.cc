@@ -10,6 +10,7 @@
 #include "twin/render/film_panels.h"
 #include "twin/render/picture.h"
 #include "twin/render/recording.h"
+#include "twin/render/smooth_edges.h"
 #include "twin/render/stage.h"
 
 namespace tubetwin {
@@ -17,13 +18,15 @@ namespace {
 
 // Perceived lines run inside the tubes; moved this much towards the camera they lie on top.
 constexpr double kLineLift_m = 0.016;
-constexpr double kLineRadius_m = 0.0028, kTargetRadius_m = 0.0048;
+constexpr double kLineRadius_m = 0.0038, kTargetRadius_m = 0.0065;
 
 /// Draws frames of one recording; every worker has its own data and OpenGL context.
 class FrameDrawer {
  public:
-  FrameDrawer(const Recording& recording, int workers)
-      : recording_(recording), model_(CompileStage(recording.cell_xml, "recording")) {
+  FrameDrawer(const Recording& recording, int workers, StageQuality quality)
+      : recording_(recording),
+        quality_(quality),
+        model_(CompileStage(recording.cell_xml, "recording", quality)) {
     const std::size_t nq = static_cast<std::size_t>(model_->nq);
     for (const Recording::Frame& frame : recording.frames) {
       if (frame.qpos.size() == nq) continue;
@@ -50,6 +53,7 @@ class FrameDrawer {
       mj_camlight(&model, &data);
     });
     Image image = workers_[worker].renderer->Draw(data, CellView(), Strokes(frame));
+    if (quality_ == StageQuality::kFilm) SmoothEdges(image);
     DrawPanels(recording_, frame, image);
     return image;
   }
@@ -67,16 +71,17 @@ class FrameDrawer {
     const Recording::Overlay& overlay = recording_.overlays[index];
     for (std::size_t i = 0; i < overlay.lines_N.size(); ++i) {
       const bool target = static_cast<int>(i) == overlay.target;
-      strokes.push_back(
-          {Transformed(recording_.bin.X_BN * Translation(0, 0, kLineLift_m), overlay.lines_N[i]),
-           target ? kTargetRadius_m : kLineRadius_m,
-           target ? kTargetColour : ClassColour(overlay.classes[i])});
+      Polyline line_B = Transformed(recording_.bin.X_BN, overlay.lines_N[i]);
+      for (Vector3& p : line_B) p += kLineLift_m * (CellView().eye_B - p).normalized();
+      strokes.push_back({line_B, target ? kTargetRadius_m : kLineRadius_m,
+                         target ? kTargetColour : ClassColour(overlay.classes[i])});
     }
     return strokes;
   }
 
   const Recording& recording_;
-  MjModel model_;
+  const StageQuality quality_;
+  const MjModel model_;
   std::vector<Worker> workers_;
 };
 
@@ -91,7 +96,7 @@ void DrawAndEncode(const Recording& recording, int stride, Parallelism paralleli
                    cv::VideoWriter& writer) {
   const int count = (static_cast<int>(recording.frames.size()) + stride - 1) / stride;
   const int workers = std::clamp(parallelism.threads, 1, std::max(1, count));
-  FrameDrawer drawer(recording, workers);
+  FrameDrawer drawer(recording, workers, StageQuality::kFilm);
   constexpr int kBatchPerWorker = 8;
   const int batch = kBatchPerWorker * workers;
   std::vector<Image> encoding;
@@ -142,7 +147,7 @@ void RenderPicture(const Recording& recording, int frame, const std::string& pat
     throw Error(ErrorKind::kUsage, "recording: there is no frame " + std::to_string(frame) +
                                        ", allowed are 0 to " + std::to_string(count - 1));
   }
-  WritePng(FrameDrawer(recording, 1).Draw(frame, 0), path);
+  WritePng(FrameDrawer(recording, 1, StageQuality::kStill).Draw(frame, 0), path);
 }
 
 }  // namespace tubetwin

@@ -103,7 +103,7 @@ std::array<double, 3> PileColour(int tube) {
   return kColours[static_cast<std::size_t>(tube) % std::size(kColours)];
 }
 
-void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m) {
+void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m, StageQuality quality) {
   mjsBody* world = mjs_findBody(&spec, "world");
   while (mjsElement* light = mjs_firstElement(&spec, mjOBJ_LIGHT)) mjs_delete(&spec, light);
   AddLight(*world, centre_B, {-0.40, 0.50, -1.0}, 0.58f, true);
@@ -125,10 +125,11 @@ void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m) {
   visual.global.offheight = kPictureHeight;
   visual.global.fovy = static_cast<float>(kFieldOfView_deg);
   visual.global.orthographic = 0;
-  visual.quality.shadowsize = 2048;
-  visual.quality.offsamples = 4;
-  visual.quality.numslices = 20;
-  visual.quality.numstacks = 10;
+  const bool still = quality == StageQuality::kStill;
+  visual.quality.shadowsize = still ? 4096 : 1536;
+  visual.quality.offsamples = still ? 4 : 0;
+  visual.quality.numslices = still ? 28 : 14;
+  visual.quality.numstacks = still ? 16 : 6;
   visual.quality.numquads = 1;
   Set(visual.headlight.ambient, std::array{0.32, 0.32, 0.34});
   Set(visual.headlight.diffuse, std::array{0.16, 0.16, 0.16});
@@ -144,7 +145,7 @@ void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m) {
   Set(visual.rgba.haze, std::array{0.80f, 0.84f, 0.88f, 1.0f});
 }
 
-MjModel CompileStage(const std::string& cell_xml, const std::string& source) {
+MjModel CompileStage(const std::string& cell_xml, const std::string& source, StageQuality quality) {
   InitEngine();
   char error[512] = "";
   mjSpec* parsed = nullptr;
@@ -153,7 +154,7 @@ MjModel CompileStage(const std::string& cell_xml, const std::string& source) {
   if (spec == nullptr) {
     throw Error(ErrorKind::kBadData, source + ": the cell's XML does not parse: " + error);
   }
-  DressStage(*spec, kCellCentre_B, kCellReach_m);
+  DressStage(*spec, kCellCentre_B, kCellReach_m, quality);
   try {
     return Compile(*spec, source);
   } catch (const Error& problem) {
@@ -175,7 +176,8 @@ MjModel CompileStage(const Pile& pile) {
     TubeBody(*spec, "tube_" + std::to_string(pile.tubes[i].id), pile.tubes[i], tube_options);
   }
   const Vector3 centre_B = pile.bin.X_BN * Vector3(0, 0, 0.5 * pile.bin.wall_m());
-  DressStage(*spec, centre_B, 0.5 * Vector3(pile.bin.size_m.data()).norm() + 0.4);
+  DressStage(*spec, centre_B, 0.5 * Vector3(pile.bin.size_m.data()).norm() + 0.4,
+             StageQuality::kStill);
   return Compile(*spec, "picture of a pile");
 }
 

@@ -10,14 +10,18 @@ namespace tubetwin {
 
 inline constexpr int kPictureWidth = 1280, kPictureHeight = 720;
 
+/// Stills take what looks best; films what software rendering draws 30 times per second (their
+/// edges are smoothed afterwards, see SmoothEdges).
+enum class StageQuality { kStill, kFilm };
+
 /// Sky, floor, colours, lights and smoothness of all pictures; lights of the scene itself are
 /// replaced. Shadows fall within `reach_m` of `centre_B`. Changes looks only, never bodies or
 /// coordinates.
-void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m);
+void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m, StageQuality quality);
 
 /// A recorded cell, dressed. `source` names the recording in errors. Throws Error(kBadData) when
 /// the XML does not parse or compile.
-MjModel CompileStage(const std::string& cell_xml, const std::string& source);
+MjModel CompileStage(const std::string& cell_xml, const std::string& source, StageQuality quality);
 
 /// Red, green, blue of a pile's tube in its picture.
 std::array<double, 3> PileColour(int tube);

@@ -31,7 +31,7 @@ void AddStroke(mjvScene& scene, const Stroke& stroke) {
     mjv_connector(&geom, mjGEOM_CAPSULE, stroke.radius_m, stroke.line_B[i].data(),
                   stroke.line_B[i + 1].data());
     geom.category = mjCAT_DECOR;
-    geom.emission = 0.7f;
+    geom.emission = 0.35f;
     geom.castshadow = 0;
   }
 }
