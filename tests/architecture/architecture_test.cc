@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 #include "hw_bridge/base/files.h"
 #include "hw_bridge/base/text.h"
@@ -127,6 +128,47 @@ TEST_CASE("every source file is listed by name in the build") {
       breaks.push_back((folder / "CMakeLists.txt").string() + " collects files by pattern");
     }
   }
+  CheckNone(breaks);
+}
+
+TEST_CASE("every library that the build looks for is in a package that ./dev installs") {
+  const std::map<std::string, std::string> package_of = {
+      {"Eigen3", "libeigen3-dev"}, {"nlohmann_json", "nlohmann-json3-dev"},
+      {"Threads", "g++"},          {"Catch2", "catch2"},
+      {"CLI11", "libcli11-dev"},   {"OpenCV", "libopencv-dev"},
+      {"OpenGL", "libegl-dev"},    {"embree", "libembree-dev"},
+      {"fcl", "libfcl-dev"},       {"zstd", "libzstd-dev"},
+      {"assimp", "libassimp-dev"}, {"Boost", "libboost-dev"},
+      {"spdlog", "libspdlog-dev"}, {"benchmark", "libbenchmark-dev"},
+      {"PCL", "libpcl-dev"},       {"orocos_kdl", "liborocos-kdl-dev"}};
+  const std::string dev = ReadFile(kTop + "/dev");
+  const std::size_t begin = dev.find("kBuildPackages=(");
+  REQUIRE(begin != std::string::npos);
+  std::string installed = dev.substr(begin, dev.find(')', begin) - begin) + " ";
+  std::replace(installed.begin(), installed.end(), '\n', ' ');
+  std::vector<std::string> breaks;
+  int found = 0;
+  for (const std::string& name : TopLevel(kTop)) {
+    if (!fs::is_directory(fs::path(kTop) / name)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(kTop) / name)) {
+      if (entry.path().filename() != "CMakeLists.txt") continue;
+      const std::string text = ReadFile(entry.path().string());
+      const std::string call = "find_package(";
+      for (std::size_t at = text.find(call); at != std::string::npos;
+           at = text.find(call, at + 1)) {
+        const std::size_t first = at + call.size();
+        const std::string library = text.substr(first, text.find_first_of(" )", first) - first);
+        const auto package = package_of.find(library);
+        ++found;
+        if (package == package_of.end()) {
+          breaks.push_back(library + ": add its package to this test and to ./dev");
+        } else if (installed.find(" " + package->second + " ") == std::string::npos) {
+          breaks.push_back(library + ": ./dev does not install " + package->second);
+        }
+      }
+    }
+  }
+  CHECK(found > 5);
   CheckNone(breaks);
 }
 
