@@ -136,7 +136,7 @@ TEST_CASE("every library that the build looks for is in a package that ./dev ins
       {"Eigen3", "libeigen3-dev"}, {"nlohmann_json", "nlohmann-json3-dev"},
       {"Threads", "g++"},          {"Catch2", "catch2"},
       {"CLI11", "libcli11-dev"},   {"OpenCV", "libopencv-dev"},
-      {"OpenGL", "libopengl-dev"},    {"embree", "libembree-dev"},
+      {"OpenGL", "libopengl-dev"}, {"embree", "libembree-dev"},
       {"fcl", "libfcl-dev"},       {"zstd", "libzstd-dev"},
       {"assimp", "libassimp-dev"}, {"Boost", "libboost-dev"},
       {"spdlog", "libspdlog-dev"}, {"benchmark", "libbenchmark-dev"},
