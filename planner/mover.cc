@@ -81,7 +81,10 @@ void Mover::Line(const RigidTransform& X_BE, double speed_m_s, double accelerati
 }
 
 WaitOutcome Mover::GuardedLine(const RigidTransform& X_BE, double speed_m_s, double force_limit_N) {
-  const MotionResult planned = planner_.PlanLine(Start(), X_BE, Options(speed_m_s, 0.5));
+  // Guarded ends are near by intent: pads over the tray, a tube over the floor.
+  MotionOptions options = Options(speed_m_s, 0.5);
+  options.clearance_m = kFingerClearance_m;
+  const MotionResult planned = planner_.PlanLine(Start(), X_BE, options);
   if (const auto* rejection = std::get_if<MotionRejection>(&planned)) {
     throw MoveFailure(MoveFailure::Kind::kRejected, "guarded line: " + rejection->reason);
   }
