@@ -112,6 +112,16 @@ void AddHinge(mjsBody* body, const std::string& name, const Vector3& axis, doubl
 
 }  // namespace
 
+// What the links of a hose under construction share. World axes.
+struct TubeBody::HoseChain {
+  int root = 0;
+  Vector3 root_origin = Vector3::Zero();  // First node of the root link.
+  double kg_per_m = 0.0;
+  std::vector<Matrix3> frames, rest_frames;  // z along each link.
+  std::vector<double> lengths_m;
+  std::vector<mjsBody*> bodies;
+};
+
 TubeBodyOptions MakeTubeBodyOptions(const Part& part, const RoundPhysics& physics,
                                     const RigidTransform& X_WN) {
   TubeBodyOptions options;
@@ -192,62 +202,59 @@ void TubeBody::BuildRigid(mjSpec& spec) {
   }
 }
 
+void TubeBody::AddLink(mjSpec& spec, HoseChain& chain, int i, int parent) {
+  const bool forward = i >= chain.root;
+  mjsBody* body =
+      mjs_addBody(parent < 0 ? mjs_findBody(&spec, "world") : chain.bodies[parent], nullptr);
+  chain.bodies[i] = body;
+  SetName(body->element, body_names_[i]);
+  const double length_m = chain.lengths_m[i];
+  if (parent < 0) {
+    SetPose(MakeTransform(chain.frames[i], chain.root_origin), body->pos, body->quat);
+    AddFree(body, name_ + "_free");
+  } else {
+    const Matrix3 R_PC = chain.frames[parent].transpose() * chain.frames[i];
+    const double parent_m = chain.lengths_m[parent];
+    const double z = forward ? parent_m : (parent < chain.root ? -parent_m : 0.0);
+    SetPose(MakeTransform(R_PC, Vector3(0, 0, z)), body->pos, body->quat);
+    const double stiffness = options_.bending_stiffness_Nm2 / (0.5 * (length_m + parent_m));
+    const std::array<double, 2> angles =
+        HingeAngles(R_PC, chain.rest_frames[parent].transpose() * chain.rest_frames[i].col(2));
+    AddHinge(body, body_names_[i] + "_x", Vector3::UnitX(), stiffness, angles[0]);
+    AddHinge(body, body_names_[i] + "_y", Vector3::UnitY(), stiffness, angles[1]);
+  }
+  const Vector3 near = Vector3::Zero(), far(0, 0, forward ? length_m : -length_m);
+  const double mass_kg = chain.kg_per_m * length_m;
+  SetMass(body, mass_kg, 0.5 * far,
+          PieceInertia(mass_kg, length_m, tube_.radius_m, kHoseAxial, Vector3::UnitZ()).diagonal());
+  AddCapsule(body, i, forward ? near : far, forward ? far : near);
+  if (parent < 0) nodes_[i] = {i, near};
+  nodes_[forward ? i + 1 : i] = {i, far};
+}
+
 void TubeBody::BuildHose(mjSpec& spec) {
   const Polyline line = Transformed(options_.X_WN, tube_.centerline_N);
-  const int links = static_cast<int>(line.size()) - 1, root = links / 2;
-  const double density = tube_.mass_kg * options_.mass_scale / Length(line);
-  const std::vector<Matrix3> frames = TwistFreeFrames(Tangents(line));
   const Polyline& rest = tube_.rest_centerline_N ? *tube_.rest_centerline_N : line;
   TT_CHECK(rest.size() == line.size());
-  const std::vector<Matrix3> rest_frames = RestFrames(frames, rest);
-  std::vector<double> lengths(links);
+  const int links = static_cast<int>(line.size()) - 1, root = links / 2;
+  HoseChain chain;
+  chain.root = root;
+  chain.root_origin = line[root];
+  chain.kg_per_m = tube_.mass_kg * options_.mass_scale / Length(line);
+  chain.frames = TwistFreeFrames(Tangents(line));
+  chain.rest_frames = RestFrames(chain.frames, rest);
+  chain.bodies.resize(links);
   for (int i = 0; i < links; ++i) {
-    lengths[i] = (line[i + 1] - line[i]).norm();
+    chain.lengths_m.push_back((line[i + 1] - line[i]).norm());
     body_names_.push_back(name_ + "_" + std::to_string(i));
   }
   nodes_.resize(line.size());
-  std::vector<mjsBody*> bodies(links);
-
-  // Adds link i below its neighbour towards the root. The link's frame sits at the node that both
-  // share (the root's at its first node), z forward along the tube.
-  const auto add = [&](int i, int parent) {
-    const bool forward = i >= root;
-    mjsBody* body =
-        mjs_addBody(parent < 0 ? mjs_findBody(&spec, "world") : bodies[parent], nullptr);
-    bodies[i] = body;
-    SetName(body->element, body_names_[i]);
-    if (parent < 0) {
-      SetPose(MakeTransform(frames[i], line[i]), body->pos, body->quat);
-      AddFree(body, name_ + "_free");
-    } else {
-      const Matrix3 R_PC = frames[parent].transpose() * frames[i];
-      const bool at_parents_end = forward;
-      const bool parent_is_reversed = parent < root;
-      const double z =
-          at_parents_end ? lengths[parent] : (parent_is_reversed ? -lengths[parent] : 0.0);
-      SetPose(MakeTransform(R_PC, Vector3(0, 0, z)), body->pos, body->quat);
-      const double stiffness =
-          options_.bending_stiffness_Nm2 / (0.5 * (lengths[i] + lengths[parent]));
-      const std::array<double, 2> angles =
-          HingeAngles(R_PC, rest_frames[parent].transpose() * rest_frames[i].col(2));
-      AddHinge(body, body_names_[i] + "_x", Vector3::UnitX(), stiffness, angles[0]);
-      AddHinge(body, body_names_[i] + "_y", Vector3::UnitY(), stiffness, angles[1]);
-    }
-    const Vector3 far(0, 0, forward ? lengths[i] : -lengths[i]);
-    const double mass_kg = density * lengths[i];
-    SetMass(
-        body, mass_kg, 0.5 * far,
-        PieceInertia(mass_kg, lengths[i], tube_.radius_m, kHoseAxial, Vector3::UnitZ()).diagonal());
-    AddCapsule(body, i, forward ? Vector3(0, 0, 0) : far, forward ? far : Vector3(0, 0, 0));
-    if (parent < 0) nodes_[i] = {i, Vector3::Zero()};
-    nodes_[forward ? i + 1 : i] = {i, far};
-  };
-  add(root, -1);
-  for (int i = root + 1; i < links; ++i) add(i, i - 1);
-  for (int i = root - 1; i >= 0; --i) add(i, i + 1);
+  AddLink(spec, chain, root, -1);
+  for (int i = root + 1; i < links; ++i) AddLink(spec, chain, i, i - 1);
+  for (int i = root - 1; i >= 0; --i) AddLink(spec, chain, i, i + 1);
   // Neighbours of neighbours would touch at a normal bend when links are short.
   for (int i = 0; i + 2 < links; ++i) {
-    if (lengths[i + 1] > 3.0 * tube_.radius_m) continue;
+    if (chain.lengths_m[i + 1] > 3.0 * tube_.radius_m) continue;
     mjsExclude* exclude = mjs_addExclude(&spec);
     SetString(exclude->bodyname1, body_names_[i]);
     SetString(exclude->bodyname2, body_names_[i + 2]);

@@ -82,6 +82,10 @@ class TubeBody {
  private:
   void BuildRigid(mjSpec& spec);
   void BuildHose(mjSpec& spec);
+  struct HoseChain;
+  /// Adds link i below its neighbour towards the root (-1: it is the root). The link's frame sits
+  /// at the node that both share (the root's at its first node), z forward along the tube.
+  void AddLink(mjSpec& spec, HoseChain& chain, int i, int parent);
   void AddCapsule(mjsBody* body, int index, const Vector3& from, const Vector3& to) const;
 
   std::string name_;

@@ -130,17 +130,17 @@ TEST_CASE("The public set's own file is read where the data is", "[unit]") {
   CHECK(pile.tubes[0].centerline_N.back() == Vector3(-0.126595, 0.10497, 0.0359598));
 }
 
-TEST_CASE("A bad pile file is refused with its place, value and what is allowed", "[unit]") {
-  const Folder folder("bad");
-  struct Case {
-    std::string text;
-    std::vector<std::string> says;
-  };
+struct Case {
+  std::string text;
+  std::vector<std::string> says;
+};
+
+std::vector<Case> BadFiles() {
   const std::string csv = "tube,index,x,y,z\n";
   const std::string head =
       "{\"schema\": \"tubetwin/pile/1\", \"bin\": {\"size_m\": [0.8,0.6,0.2]}, "
       "\"part\": \"pvc_a\", \"tubes\": ";
-  const std::vector<Case> cases = {
+  return {
       {"", {"is empty"}},
       {"\x89PNG\r\n", {"byte 0", "begins no pile"}},
       {"x,y,z\n", {"byte 0: 'x'", "tube,index,x,y,z"}},
@@ -183,7 +183,11 @@ TEST_CASE("A bad pile file is refused with its place, value and what is allowed"
       {"{\"tubes\": []}", {"schema"}},
       {"[1, 2]", {"object"}},
   };
-  for (const Case& c : cases) {
+}
+
+TEST_CASE("A bad pile file is refused with its place, value and what is allowed", "[unit]") {
+  const Folder folder("bad");
+  for (const Case& c : BadFiles()) {
     const std::string path = folder.Write("bad", c.text);
     const std::string message = MessageOf([&] { LoadPile(path); }, ErrorKind::kBadData);
     CHECK_THAT(message, Catch::StartsWith(path));
