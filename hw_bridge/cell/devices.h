@@ -63,7 +63,9 @@ class Arm {
   /// Starts a trajectory. Rejected when not ready, still moving, or when the arm is further than
   /// 0.2 degrees from its first point.
   [[nodiscard]] virtual CommandResult Start(const CheckedTrajectory& trajectory) = 0;
-  /// Streamed points after the running ones. Rejected when nothing runs or times do not continue.
+  /// Streamed points after the running ones; the continuation's time starts where the running
+  /// trajectory ends, and its first point is that end. Rejected when nothing runs, a stop is under
+  /// way, or the first point is elsewhere.
   [[nodiscard]] virtual CommandResult Append(const CheckedTrajectory& continuation) = 0;
   /// Ends the motion: on the path with a ramp, or as fast as the limits allow.
   virtual void Stop(StopKind kind) = 0;
