@@ -106,6 +106,10 @@ TEST_CASE("the compiled model as XML loads, compiles and has the same coordinate
   REQUIRE(spec != nullptr);
   const MjModel model = Compile(*spec, "the cell read back");
   CHECK(static_cast<std::size_t>(model->nq) == bench.twin().Qpos().size());
+  REQUIRE(model->nkey == 1);
+  for (int i = 0; i < model->nq; ++i) {
+    CHECK(model->key_qpos[i] == Approx(bench.twin().Qpos()[i]).margin(1e-6));
+  }
   CHECK(model->nbody == bench.impl().world.model().nbody);
   CHECK(xml.find("impratio=\"100\"") != std::string::npos);
   // Nothing but friction holds tubes: the only equalities are the gripper's couplings.

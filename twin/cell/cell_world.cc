@@ -87,13 +87,6 @@ void SetLooks(mjSpec& spec) {
   std::copy(position, position + 3, light->pos);
 }
 
-/// Names of the elements that hold the arm's start position.
-void SetHome(const mjModel& model, mjData& data, const JointVector& q) {
-  for (int i = 0; i < kNumJoints; ++i) {
-    data.qpos[model.jnt_qposadr[IdOf(model, mjOBJ_JOINT, ArmJointName(i))]] = q[i];
-  }
-}
-
 }  // namespace
 
 JointVector HomePosition(const ArmModel& arm, const CellLayout& layout, const Bin& bin) {
@@ -129,12 +122,26 @@ CellWorld::CellWorld(const Pile& pile, const CellLayout& layout, const RoundPhys
     tubes_.emplace_back(*spec_, "tube" + std::to_string(tube.id), tube, tube_options);
   }
 
-  model_ = Compile(*spec_, "the cell");
-  data_ = MakeData(*model_);
-  SetHome(*model_, *data_, HomePosition(Hc10(), layout, pile.bin));
+  CompileWithStart(HomePosition(Hc10(), layout, pile.bin));
   MapGeoms(pile);
   pad_contacts_.emplace(*model_);
   Refresh();
+}
+
+void CellWorld::CompileWithStart(const JointVector& q_home) {
+  // The start is a keyframe, so that whoever opens the XML finds it; its size is known only after a
+  // first compilation.
+  model_ = Compile(*spec_, "the cell");
+  std::vector<mjtNum> qpos(model_->qpos0, model_->qpos0 + model_->nq);
+  for (int i = 0; i < kNumJoints; ++i) {
+    qpos[model_->jnt_qposadr[IdOf(*model_, mjOBJ_JOINT, ArmJointName(i))]] = q_home[i];
+  }
+  mjsKey* start = mjs_addKey(spec_.get());
+  SetName(start->element, "start");
+  mjs_setDouble(start->qpos, qpos.data(), static_cast<int>(qpos.size()));
+  model_ = Compile(*spec_, "the cell");
+  data_ = MakeData(*model_);
+  mj_resetDataKeyframe(model_.get(), data_.get(), 0);
 }
 
 void CellWorld::Refresh() {

@@ -50,6 +50,7 @@ class CellWorld {
   int TubeOfGeom(int geom) const { return tube_of_geom_[geom]; }
 
  private:
+  void CompileWithStart(const JointVector& q_home);
   void MapGeoms(const Pile& pile);
 
   std::int64_t steps_ = 0;
