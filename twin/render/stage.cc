@@ -111,15 +111,6 @@ void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m, StageQual
   AddLight(*world, centre_B, {0.7, 0.6, -0.5}, 0.16f, false);
   if (!PaintGeoms(spec)) AddFloor(spec);
 
-  mjsTexture* sky = mjs_addTexture(&spec, nullptr);
-  SetName(sky->element, "tubetwin_sky");
-  sky->type = mjTEXTURE_SKYBOX;
-  sky->builtin = mjBUILTIN_GRADIENT;
-  Set(sky->rgb1, std::array{0.86, 0.90, 0.94});
-  Set(sky->rgb2, std::array{0.42, 0.50, 0.60});
-  sky->width = 256;
-  sky->height = 1536;
-
   mjVisual& visual = spec.visual;
   visual.global.offwidth = kPictureWidth;
   visual.global.offheight = kPictureHeight;
@@ -141,8 +132,6 @@ void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m, StageQual
   visual.map.znear = 0.05f;
   visual.map.zfar = 60.0f;
   visual.map.shadowclip = static_cast<float>(reach_m);
-  visual.map.haze = 0.35f;
-  Set(visual.rgba.haze, std::array{0.80f, 0.84f, 0.88f, 1.0f});
 }
 
 MjModel CompileStage(const std::string& cell_xml, const std::string& source, StageQuality quality) {

@@ -14,7 +14,7 @@ inline constexpr int kPictureWidth = 1280, kPictureHeight = 720;
 /// edges are smoothed afterwards, see SmoothEdges).
 enum class StageQuality { kStill, kFilm };
 
-/// Sky, floor, colours, lights and smoothness of all pictures; lights of the scene itself are
+/// Floor, colours, lights and smoothness of all pictures; lights of the scene itself are
 /// replaced. Shadows fall within `reach_m` of `centre_B`. Changes looks only, never bodies or
 /// coordinates.
 void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m, StageQuality quality);

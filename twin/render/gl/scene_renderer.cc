@@ -92,7 +92,10 @@ SceneRenderer::SceneRenderer(const mjModel& model, int width, int height) {
   if (context->currentBuffer != mjFB_OFFSCREEN) {
     throw Error(ErrorKind::kDevice, "no picture can be drawn: OpenGL has no framebuffer objects");
   }
-  scene->flags[mjRND_REFLECTION] = 0;  // Costs a second pass and adds nothing here.
+  // Each costs a pass over the whole picture and adds nothing here: the floor fills the background.
+  for (const int flag : {mjRND_REFLECTION, mjRND_SKYBOX, mjRND_FOG, mjRND_HAZE}) {
+    scene->flags[flag] = 0;
+  }
 }
 
 SceneRenderer::~SceneRenderer() = default;
