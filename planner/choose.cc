@@ -73,12 +73,18 @@ class Chooser {
   PlanResult Run() {
     const double start_s = WallSeconds();
     std::vector<Option> options = FreeOptions();
-    const bool any_certain = CountFeasible(options) > 0;
-    if (!any_certain) {
-      std::vector<Option> covered = CoveredOptions();
-      options.insert(options.end(), covered.begin(), covered.end());
+    TryAll(options, kCertainFree);
+    if (result_.plans.empty()) {
+      const std::vector<Target> targets = CoveredTargets();
+      for (std::size_t next = 0; next < targets.size() && result_.plans.empty();) {
+        next = AddCovered(targets, next, options);
+        Sort(options);
+        TryAll(options, kCertainCovered);
+      }
+      FindBest();
     }
-    Rest(options);
+    Sort(options);
+    TryAll(options, kJams);
     result_.planning_s = WallSeconds() - start_s;
     return std::move(result_);
   }
@@ -124,43 +130,110 @@ class Chooser {
     return options;
   }
 
-  std::vector<Option> CoveredOptions() {
-    const std::vector<Target> targets = Targets(false);
+  // Covered tubes that can be grasped, those in doubt last, the least covered first.
+  std::vector<Target> CoveredTargets() {
+    std::vector<Target> targets = Targets(false);
+    std::stable_sort(targets.begin(), targets.end(), [this](const Target& a, const Target& b) {
+      if (a.doubt.empty() != b.doubt.empty()) return a.doubt.empty();
+      return Covers(a.tube->id) < Covers(b.tube->id);
+    });
+    return targets;
+  }
+
+  int Covers(int id) const {
+    return static_cast<int>(
+        std::count_if(scene_.crossings.begin(), scene_.crossings.end(),
+                      [id](const Crossing& crossing) { return crossing.under == id; }));
+  }
+
+  // Scores the motions of tubes from `first` on, about max_candidates of them, and adds their
+  // options; returns the first tube that is left.
+  std::size_t AddCovered(const std::vector<Target>& targets, std::size_t first,
+                         std::vector<Option>& options) {
     EvaluationRequest request;
-    request.samples = config_.samples;
     request.seed = seed_;
     std::vector<const Target*> target_of;
-    for (const Target& target : targets) {
-      MotionSet set = MakeMotions(scene_, *target.tube, bin_, config_);
-      Report(set.rejections);
-      for (CandidateMotion& motion : set.motions) {
-        result_.candidates.push_back(motion);
-        // The place where it would be held if all motions were equally good.
-        GraspSet grasps =
-            RankGrasps(target.sites, *target.tube, motion, 0.0, top_m_, bin_, config_);
-        if (grasps.grasps.empty()) {
-          Report(grasps.rejections);
-          result_.rejections.push_back(
-              {target.tube->id, motion.name, "", "no grasp suits this motion"});
-          continue;
-        }
-        request.grasp_at_m.push_back(grasps.grasps.front().at_m);
-        request.candidates.push_back(std::move(motion));
-        target_of.push_back(&target);
-      }
+    std::size_t next = first;
+    for (; next < targets.size(); ++next) {
+      if (static_cast<int>(request.candidates.size()) >= config_.max_candidates) break;
+      AddMotions(targets[next], request, target_of);
     }
-    std::vector<Option> options;
-    if (request.candidates.empty()) return options;
+    if (request.candidates.empty()) return next;
+    const std::vector<CandidateScore> scores = Score(request);
+    for (std::size_t k = 0; k < scores.size(); ++k) {
+      AddOptions(*target_of[k], request.candidates[k], &scores[k], options);
+    }
+    return next;
+  }
+
+  void AddMotions(const Target& target, EvaluationRequest& request,
+                  std::vector<const Target*>& target_of) {
+    MotionSet set = MakeMotions(scene_, *target.tube, bin_, config_);
+    Report(set.rejections);
+    for (CandidateMotion& motion : set.motions) {
+      result_.candidates.push_back(motion);
+      // The place where it would be held if all motions were equally good.
+      GraspSet grasps = RankGrasps(target.sites, *target.tube, motion, 0.0, top_m_, bin_, config_);
+      if (grasps.grasps.empty()) {
+        Report(grasps.rejections);
+        result_.rejections.push_back(
+            {target.tube->id, motion.name, "", "no grasp suits this motion"});
+        continue;
+      }
+      request.grasp_at_m.push_back(grasps.grasps.front().at_m);
+      request.candidates.push_back(std::move(motion));
+      target_of.push_back(&target);
+    }
+  }
+
+  // One roll-out for every motion, then all samples for the most promising ones.
+  std::vector<CandidateScore> Score(const EvaluationRequest& request) {
+    EvaluationRequest screen = request;
+    screen.samples = 1;
+    std::vector<CandidateScore> scores = Evaluate(screen);
+    if (config_.samples > 1) {
+      std::vector<std::size_t> order(scores.size());
+      for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+      const auto bad = [&](std::size_t k) {
+        return scores[k].cost + config_.weight_extra * scores[k].extra_probability;
+      };
+      std::stable_sort(order.begin(), order.end(),
+                       [&](std::size_t a, std::size_t b) { return bad(a) < bad(b); });
+      order.resize(std::min<std::size_t>(order.size(), config_.refined));
+      EvaluationRequest refine = request;
+      refine.samples = config_.samples;
+      refine.candidates.clear();
+      refine.grasp_at_m.clear();
+      for (const std::size_t k : order) {
+        refine.candidates.push_back(request.candidates[k]);
+        refine.grasp_at_m.push_back(request.grasp_at_m[k]);
+      }
+      const std::vector<CandidateScore> refined = Evaluate(refine);
+      for (std::size_t i = 0; i < order.size(); ++i) scores[order[i]] = refined[i];
+    }
+    result_.evaluation.candidates.insert(result_.evaluation.candidates.end(), scores.begin(),
+                                         scores.end());
+    return scores;
+  }
+
+  std::vector<CandidateScore> Evaluate(const EvaluationRequest& request) {
     TT_CHECK(evaluate_);
     const double start_s = WallSeconds();
-    result_.evaluation = evaluate_(scene_, part_, bin_, request);
-    result_.evaluator_s = WallSeconds() - start_s;
-    TT_CHECK(result_.evaluation.candidates.size() == request.candidates.size());
-    for (std::size_t k = 0; k < request.candidates.size(); ++k) {
-      AddOptions(*target_of[k], request.candidates[k], &result_.evaluation.candidates[k], options);
+    EvaluationResult answer = evaluate_(scene_, part_, bin_, request);
+    TT_CHECK(answer.candidates.size() == request.candidates.size());
+    result_.evaluator_s += WallSeconds() - start_s;
+    result_.evaluation.settle_s += answer.settle_s;
+    result_.evaluation.wall_s += answer.wall_s;
+    result_.evaluation.threads = answer.threads;
+    return std::move(answer.candidates);
+  }
+
+  void FindBest() {
+    const std::vector<CandidateScore>& scores = result_.evaluation.candidates;
+    for (std::size_t k = 0; k < scores.size(); ++k) {
+      int& best = result_.evaluation.best;
+      if (best < 0 || scores[k].cost < scores[best].cost) best = static_cast<int>(k);
     }
-    Sort(options);
-    return options;
   }
 
   // All grasps of a tube for a motion; `score` null: the simulator was not needed.
@@ -201,20 +274,10 @@ class Chooser {
     });
   }
 
-  // Checks the leading options of the first rank, keeps what the arm can do and says how many.
-  int CountFeasible(const std::vector<Option>& options) {
+  // Checks sorted options up to a rank, best first; what was tried before is not tried again.
+  void TryAll(const std::vector<Option>& options, Rank last) {
     for (const Option& option : options) {
-      if (option.rank != kCertainFree) break;
-      Try(option);
-    }
-    return static_cast<int>(result_.plans.size());
-  }
-
-  // Checks all that was not checked yet, in order.
-  void Rest(std::vector<Option>& options) {
-    Sort(options);
-    for (const Option& option : options) {
-      if (option.rank != kCertainFree) Try(option);
+      if (option.rank <= last) Try(option);
     }
   }
 

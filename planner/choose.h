@@ -17,7 +17,9 @@ using FeasibilityFunction =
 
 /// What to pick and how, best first. Free tubes go straight up without asking the simulator (Leão
 /// et al. 2020, section 3.3); only when no plan for one survives, or `config.exclude_free`, the
-/// motions of covered tubes are scored by `evaluate`. Ranks: free tubes; covered tubes; free and
+/// motions of covered tubes are scored by `evaluate`: the least covered tubes first, in batches of
+/// about `max_candidates` motions until one of them gives a plan; each motion once, then the best
+/// `refined` of a batch with all samples. Ranks: free tubes; covered tubes; free and
 /// then covered tubes that are in doubt (shorter than `min_length_share` of the part or of little
 /// confidence; the plan's note says which); motions that jammed in the simulator. Within a rank by
 /// cost: the grasp's, plus doubt about the tube, plus the probability that another tube comes

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kStretchStep_m = 0.002;
 constexpr double kSlack_m = 0.002;
+constexpr double kSameSlide_m = 0.005;
 constexpr double kStretchMax_m = 0.15;  // Tubes that lie along each other do not hide for ever.
 
 Polyline Flat(Polyline line) {
@@ -102,6 +103,15 @@ void AddEscape(const PerceivedTube& tube, const HiddenStretch& hidden, int sign,
   const Vector3 lifted(0, 0, config.escape_first_lift_m);
   const Vector3 slid = lifted + slide_m * direction;
   motion.waypoints_N = {Vector3::Zero(), lifted, slid, slid + Vector3(0, 0, config.lift_m)};
+  // Crossings of a straight stretch, or a near wall, give the same slide again: one is enough, with
+  // both sections forbidden.
+  for (CandidateMotion& known : set.motions) {
+    if (known.waypoints_N.size() < 3 || (known.waypoints_N[2] - slid).norm() > kSameSlide_m)
+      continue;
+    known.forbidden_from_m = std::min(known.forbidden_from_m, motion.forbidden_from_m);
+    known.forbidden_to_m = std::max(known.forbidden_to_m, motion.forbidden_to_m);
+    return;
+  }
   set.motions.push_back(std::move(motion));
 }
 

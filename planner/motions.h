@@ -30,8 +30,9 @@ struct MotionSet {
 /// escapes (Leão et al. 2020, section 3.3.1): a small lift, a slide along the hidden stretch's
 /// direction on the floor plane in either sense by d_var + d_const, a lift. "escape+" slides
 /// towards growing arc length, so what lies before the crossing passes under the other tube and may
-/// not be grasped; later crossings are "escape+2", "escape-2" and so on. The slide is shortened so
-/// that the whole tube's bounding box stays clear of the walls; less than a radius is rejected.
+/// not be grasped; later crossings are "escape+2", "escape-2" and so on, left out where an earlier
+/// slide ends within 5 mm (its forbidden section then grows). The slide is shortened so that the
+/// whole tube's bounding box stays clear of the walls; less than a radius is rejected.
 /// Precondition: the crossings' ids are tubes of the scene.
 MotionSet MakeMotions(const TubeScene& scene, const PerceivedTube& tube, const Bin& bin,
                       const PlannerConfig& config);

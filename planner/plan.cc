@@ -32,7 +32,11 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
   v.Field("min_length_share", "tubes shorter than this share of the part come last",
           min_length_share, {0.0, 1.0});
   v.Field("min_confidence", "tubes with less confidence come last", min_confidence, {0.0, 1.0});
-  v.Field("samples", "roll-outs per candidate; 1 gives the paper's cost", samples, {1, 64});
+  v.Field("samples", "roll-outs of the best candidates; 1 gives the paper's cost", samples,
+          {1, 64});
+  v.Field("refined", "how many of the best candidates get all samples", refined, {1, 1000});
+  v.Field("max_candidates", "motions that are simulated before it is known whether one will do",
+          max_candidates, {1, 10000});
   v.Field("max_plans", "ranked plans that are checked for the arm", max_plans, {1, 100});
   v.Field("plans_per_tube", "of these, at most so many for one tube", plans_per_tube, {1, 100});
   v.Field("exclude_free", "free tubes stay but may not be chosen", exclude_free);

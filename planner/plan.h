@@ -35,8 +35,10 @@ struct PlannerConfig {
   double max_displacement_m = 1.0;
   double min_length_share = 0.7;  ///< Tubes shorter than this share of the part come last.
   double min_confidence = 0.3;    ///< Tubes below come last.
-  int samples = 3;                ///< Evaluator roll-outs per candidate; 1 is the paper's cost.
-  int max_plans = 8;              ///< Ranked plans that are checked for the arm and returned.
+  int samples = 3;                ///< Roll-outs of the best candidates; 1 is the paper's cost.
+  int refined = 4;                ///< So many of the best candidates get all samples.
+  int max_candidates = 12;  ///< Motions that are simulated before it is known whether one will do.
+  int max_plans = 8;        ///< Ranked plans that are checked for the arm and returned.
   int plans_per_tube = 3;
   bool exclude_free = false;  ///< Free tubes stay but may not be chosen.
   double lift_speed_m_s = 0.25;

@@ -93,10 +93,29 @@ TEST_CASE("Every crossing of a strongly covered tube gives two escapes", "[unit]
                     StraightLine({-0.10, -0.2, 3 * kRadius}, {-0.10, 0.2, 3 * kRadius})},
                    kRadius);
   REQUIRE(scene.tubes[0].tube_class == TubeClass::kStrong);
-  const MotionSet set = MakeMotions(scene, scene.tubes[0], Bin{}, PlannerConfig{});
+  Bin wide;
+  wide.size_m = {2.0, 2.0, 0.09};
+  const MotionSet set = MakeMotions(scene, scene.tubes[0], wide, PlannerConfig{});
   REQUIRE(set.motions.size() == 5);
   // In the order of arc length: the crossing with tube 3 comes first.
   CHECK(Named(set, "escape+").forbidden_to_m < Named(set, "escape+2").forbidden_to_m);
+}
+
+TEST_CASE("Two crossings that a wall turns into the same slide give it once", "[unit]") {
+  const double x = 0.5 * 0.77 - kRadius - 0.040;  // 30 mm to the safety zone: both are cut to that.
+  const TubeScene scene =
+      PerfectScene({StraightLine({x - 0.5, 0, kRadius}, {x, 0, kRadius}),
+                    StraightLine({0.10, -0.2, 3 * kRadius}, {0.10, 0.2, 3 * kRadius}),
+                    StraightLine({-0.05, -0.2, 3 * kRadius}, {-0.05, 0.2, 3 * kRadius})},
+                   kRadius);
+  const MotionSet set = MakeMotions(scene, scene.tubes[0], Bin{}, PlannerConfig{});
+  int forward = 0;
+  for (const CandidateMotion& motion : set.motions) {
+    if (motion.name.rfind("escape+", 0) == 0) ++forward;
+  }
+  CHECK(forward == 1);
+  CHECK(Named(set, "escape+").forbidden_to_m ==
+        Approx(0.10 - (x - 0.5) + kRadius).margin(kSampling));
 }
 
 TEST_CASE("Unseen nodes beside a crossing belong to its hidden stretch", "[unit]") {
