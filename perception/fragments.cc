@@ -19,6 +19,10 @@ constexpr double kPointsPerNode = 80.0;
 constexpr double kLeastFit = 0.5;
 /// A tube's normals turn about its axis; those of an edge or a strip do not (rms sine).
 constexpr double kLeastSpread = 0.12;
+/// Cosine to the outward tangent from which a normal is one of the rounded end, and from which it
+/// can hardly be one of a bend.
+constexpr double kOutward = 0.5;
+constexpr double kStraightOut = 0.72;
 /// Fewest well-fitting points of a node that stays at an end.
 constexpr double kLeastSupport = 4.0;
 
@@ -70,23 +74,29 @@ void TrimEnds(Polyline& line, std::vector<double>& support) {
 }
 
 /// Seen area of the rounded end, as a share of what is usually visible: cells of the surface whose
-/// normal looks out of the end.
+/// normal looks out of the end. A sharp bend shows such normals as well, but hardly any that look
+/// straight out.
 double CapEvidence(const FragmentEnd& end, const std::vector<SurfacePoint>& points,
                    const std::vector<int>& chosen, double r) {
   constexpr double kCell_m = 0.0025;
-  std::set<std::tuple<int, int, int>> cells;
+  std::set<std::tuple<int, int, int>> outward, straight_out;
   for (const int i : chosen) {
     const SurfacePoint& point = points[static_cast<std::size_t>(i)];
     const Vector3 d = point.p_N.cast<double>() - end.p_N;
     if (d.squaredNorm() > 1.3 * 1.3 * r * r || d.dot(end.outward_N) < 0.35 * r) continue;
-    if (point.n_N.cast<double>().dot(end.outward_N) < 0.5) continue;
-    cells.insert({static_cast<int>(std::floor(d.x() / kCell_m)),
-                  static_cast<int>(std::floor(d.y() / kCell_m)),
-                  static_cast<int>(std::floor(d.z() / kCell_m))});
+    const double cosine = point.n_N.cast<double>().dot(end.outward_N);
+    if (cosine < kOutward) continue;
+    const std::tuple cell(static_cast<int>(std::floor(d.x() / kCell_m)),
+                          static_cast<int>(std::floor(d.y() / kCell_m)),
+                          static_cast<int>(std::floor(d.z() / kCell_m)));
+    outward.insert(cell);
+    if (cosine > kStraightOut) straight_out.insert(cell);
   }
-  // Half of the cap's pi r^2 is seen from above; a third of that is enough to be sure.
-  const double enough = 0.5 * kPi * r * r / 3.0 / (kCell_m * kCell_m);
-  return std::min(1.0, static_cast<double>(cells.size()) / enough);
+  // Half of the pi r^2 beyond the first cosine is seen from above; a third of that is enough to be
+  // sure. Of the 0.4 pi r^2 beyond the second most is too steep for a normal.
+  const double cells = r * r / (kCell_m * kCell_m);
+  return std::min({1.0, static_cast<double>(outward.size()) / (0.5 * kPi / 3.0 * cells),
+                   static_cast<double>(straight_out.size()) / (0.2 * cells)});
 }
 
 /// The refined fragment of one trace, or one of length 0 when it is no tube.
