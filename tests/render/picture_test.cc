@@ -154,6 +154,34 @@ TEST_CASE("A film has one picture per frame, 1280 x 720 at 30 per second, and is
   CHECK(cv::VideoCapture(folder.File("fast.mp4")).get(cv::CAP_PROP_FRAME_COUNT) == 4);
 }
 
+TEST_CASE("While the cell stands still the film goes on: every frame, clock and caption",
+          "[render]") {
+  const Folder folder;
+  Recording recording = SmallRecording(40);
+  for (Recording::Frame& frame : recording.frames) frame.qpos = {0.1f};
+  recording.frames.back().qpos = {0.2f};
+  RenderFilm(recording, folder.File("still.mp4"), 1, {2});
+  cv::VideoCapture film(folder.File("still.mp4"), cv::CAP_FFMPEG);
+  std::vector<cv::Mat> pictures;
+  for (cv::Mat picture; film.read(picture);) pictures.push_back(picture.clone());
+  REQUIRE(pictures.size() == 40);
+  auto difference = [&](int a, int b, const cv::Rect& where) {
+    double sum = 0;
+    for (int y = where.y; y < where.y + where.height; ++y) {
+      for (int x = where.x; x < where.x + where.width; ++x) {
+        sum += std::abs(pictures[a].at<cv::Vec3b>(y, x)[1] - pictures[b].at<cv::Vec3b>(y, x)[1]);
+      }
+    }
+    return sum / where.area();
+  };
+  const cv::Rect scene(300, 60, 700, 440), clock(1150, 10, 110, 30), caption(20, 10, 140, 30);
+  constexpr double kCodecNoise = 1.0;  // Grey values; H.264 does not repeat a still exactly.
+  CHECK(difference(5, 38, scene) < kCodecNoise);
+  CHECK(difference(5, 38, clock) > 5 * kCodecNoise);
+  CHECK(difference(5, 38, caption) > 5 * kCodecNoise);
+  CHECK(difference(38, 39, scene) > kCodecNoise / 4);  // The ball jumped: drawn anew.
+}
+
 TEST_CASE("A film of nothing or of the wrong cell is refused and leaves no file", "[render]") {
   const Folder folder;
   Recording recording = SmallRecording(2);

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 #include <future>
+#include <map>
 #include <memory>
 
 #include <opencv2/videoio.hpp>
@@ -41,6 +43,7 @@ class FrameDrawer {
     }
   }
 
+  /// The scene of one frame with its perceived lines, without panels.
   Image Draw(int frame, int worker) {
     mjData& data = *workers_[worker].data;
     const mjModel& model = *model_;
@@ -54,7 +57,6 @@ class FrameDrawer {
     });
     Image image = workers_[worker].renderer->Draw(data, CellView(), Strokes(frame));
     if (quality_ == StageQuality::kFilm) SmoothEdges(image);
-    DrawPanels(recording_, frame, image);
     return image;
   }
 
@@ -85,6 +87,28 @@ class FrameDrawer {
   std::vector<Worker> workers_;
 };
 
+/// Whether two frames' scenes look the same: nothing moved by what a picture could show.
+bool LooksSame(const Recording::Frame& a, const Recording::Frame& b) {
+  constexpr float kInvisible = 1e-4f;  // Metres, or radians at a metre: 0.04 pixels.
+  if (a.overlay != b.overlay) return false;
+  for (std::size_t i = 0; i < a.qpos.size(); ++i) {
+    if (std::abs(a.qpos[i] - b.qpos[i]) > kInvisible) return false;
+  }
+  return true;
+}
+
+/// For every picture of the film the frame whose scene it shows: its own, or the last drawn one
+/// while the cell stands still (scans, weighing).
+std::vector<int> SceneFrames(const Recording& recording, int stride) {
+  std::vector<int> scenes;
+  for (int frame = 0; frame < static_cast<int>(recording.frames.size()); frame += stride) {
+    const bool same =
+        !scenes.empty() && LooksSame(recording.frames[scenes.back()], recording.frames[frame]);
+    scenes.push_back(same ? scenes.back() : frame);
+  }
+  return scenes;
+}
+
 void Encode(cv::VideoWriter& writer, std::vector<Image>& images) {
   for (Image& image : images) {
     writer.write(cv::Mat(image.height, image.width, CV_8UC3, image.bgr.data()));
@@ -95,19 +119,33 @@ void Encode(cv::VideoWriter& writer, std::vector<Image>& images) {
 void DrawAndEncode(const Recording& recording, int stride, Parallelism parallelism,
                    cv::VideoWriter& writer) {
   const int count = (static_cast<int>(recording.frames.size()) + stride - 1) / stride;
-  const int workers = std::clamp(parallelism.threads, 1, std::max(1, count));
-  FrameDrawer drawer(recording, workers, StageQuality::kFilm);
+  const int workers = std::clamp(parallelism.threads, 1, count);
+  FrameDrawer drawer(recording, workers, StageQuality::kFilm);  // Checks the frames' sizes.
+  const std::vector<int> scenes = SceneFrames(recording, stride);
   constexpr int kBatchPerWorker = 8;
   const int batch = kBatchPerWorker * workers;
   std::vector<Image> encoding;
+  std::map<int, Image> drawn;  // By scene; those that the batch needs.
   for (int first = 0; first < count; first += batch) {
     const auto policy = workers > 1 ? std::launch::async : std::launch::deferred;
     std::future<void> encoded = std::async(policy, [&] { Encode(writer, encoding); });
-    std::vector<Image> drawn(static_cast<std::size_t>(std::min(batch, count - first)));
-    ParallelFor(static_cast<int>(drawn.size()), {workers},
-                [&](int i, int worker) { drawn[i] = drawer.Draw((first + i) * stride, worker); });
+    const int pictures = std::min(batch, count - first);
+    drawn.erase(drawn.begin(), drawn.lower_bound(scenes[first]));
+    std::vector<std::pair<const int, Image>*> wanted;
+    for (int i = first; i < first + pictures; ++i) {
+      const auto [entry, added] = drawn.try_emplace(scenes[i]);
+      if (added) wanted.push_back(&*entry);
+    }
+    ParallelFor(static_cast<int>(wanted.size()), {workers}, [&](int i, int worker) {
+      wanted[i]->second = drawer.Draw(wanted[i]->first, worker);
+    });
+    std::vector<Image> finished(static_cast<std::size_t>(pictures));
+    ParallelFor(pictures, {workers}, [&](int i, int) {
+      finished[i] = drawn.at(scenes[first + i]);
+      DrawPanels(recording, (first + i) * stride, finished[i]);
+    });
     encoded.get();
-    encoding = std::move(drawn);
+    encoding = std::move(finished);
   }
   Encode(writer, encoding);
 }
@@ -147,7 +185,9 @@ void RenderPicture(const Recording& recording, int frame, const std::string& pat
     throw Error(ErrorKind::kUsage, "recording: there is no frame " + std::to_string(frame) +
                                        ", allowed are 0 to " + std::to_string(count - 1));
   }
-  WritePng(FrameDrawer(recording, 1, StageQuality::kStill).Draw(frame, 0), path);
+  Image image = FrameDrawer(recording, 1, StageQuality::kStill).Draw(frame, 0);
+  DrawPanels(recording, frame, image);
+  WritePng(image, path);
 }
 
 }  // namespace tubetwin
