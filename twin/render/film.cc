@@ -21,6 +21,28 @@ namespace {
 // Perceived lines run inside the tubes; moved this much towards the camera they lie on top.
 constexpr double kLineLift_m = 0.016;
 constexpr double kLineRadius_m = 0.0038, kTargetRadius_m = 0.0065;
+constexpr double kLineTolerance_m = 0.0015;  // Half a pixel.
+
+/// The line with fewer points, none of the old ones farther from it than `tolerance_m`
+/// (Douglas-Peucker): perceived lines have a point per 10 mm, and every piece is drawn twice.
+Polyline Simplified(const Polyline& line, double tolerance_m) {
+  if (line.size() < 3) return line;
+  std::size_t farthest = 0;
+  double distance_m = tolerance_m;
+  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
+    const double d = Closest({line.front(), line.back()}, line[i]).distance_m;
+    if (d > distance_m) {
+      distance_m = d;
+      farthest = i;
+    }
+  }
+  if (farthest == 0) return {line.front(), line.back()};
+  const auto split = line.begin() + static_cast<std::ptrdiff_t>(farthest);
+  Polyline out = Simplified({line.begin(), split + 1}, tolerance_m);
+  const Polyline rest = Simplified({split, line.end()}, tolerance_m);
+  out.insert(out.end(), rest.begin() + 1, rest.end());
+  return out;
+}
 
 /// Draws frames of one recording; every worker has its own data and OpenGL context.
 class FrameDrawer {
@@ -73,7 +95,8 @@ class FrameDrawer {
     const Recording::Overlay& overlay = recording_.overlays[index];
     for (std::size_t i = 0; i < overlay.lines_N.size(); ++i) {
       const bool target = static_cast<int>(i) == overlay.target;
-      Polyline line_B = Transformed(recording_.bin.X_BN, overlay.lines_N[i]);
+      Polyline line_B =
+          Transformed(recording_.bin.X_BN, Simplified(overlay.lines_N[i], kLineTolerance_m));
       for (Vector3& p : line_B) p += kLineLift_m * (CellView().eye_B - p).normalized();
       strokes.push_back({line_B, target ? kTargetRadius_m : kLineRadius_m,
                          target ? kTargetColour : ClassColour(overlay.classes[i])});

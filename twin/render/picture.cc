@@ -47,8 +47,8 @@ View PileView(const Bin& bin) {
 
 View CellView() {
   View view;
-  view.eye_B = {2.05, -1.75, 1.45};
-  view.target_B = {0.27, -0.22, 0.33};
+  view.eye_B = {2.13, -1.83, 1.51};
+  view.target_B = {0.27, -0.22, 0.36};
   return view;
 }
 
