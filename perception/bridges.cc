@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "perception/near_lines.h"
+
 namespace tubetwin {
 namespace {
 
@@ -58,16 +60,6 @@ bool HiddenSpace::FitsBin(const Vector3& p_N) const {
   return out < 0.003 - r || out > Bin::kWallThickness_m + r - 0.003;
 }
 
-double DistanceToOthers(const std::vector<Fragment>& fragments, const Vector3& p_N, int except_a,
-                        int except_b) {
-  double nearest = 1e9;
-  for (std::size_t i = 0; i < fragments.size(); ++i) {
-    if (static_cast<int>(i) == except_a || static_cast<int>(i) == except_b) continue;
-    nearest = std::min(nearest, Closest(fragments[i].line_N, p_N).distance_m);
-  }
-  return nearest;
-}
-
 namespace {
 
 /// Cubic between two ends that leaves and arrives along their tangents; the smaller `stiffness`,
@@ -100,16 +92,16 @@ double BendingEnergy(const FragmentEnd& a, const FragmentEnd& b) {
 }
 
 /// What a way through the unseen costs beyond its shape; nothing when something forbids it.
-std::optional<double> CostOfPlace(const Bridge& bridge, const std::vector<Fragment>& fragments,
+std::optional<double> CostOfPlace(const Bridge& bridge, const NearLines& lines,
                                   const HiddenSpace& space) {
   const double r = space.radius_m();
   int unknown = 0, denied_in_a_row = 0;
-  double nearest = 1e9;
+  double nearest = 2 * r;  // What is further away costs nothing.
   // Next to its ends a bridge is where the fragments' own edges are seen.
   for (std::size_t i = 1; i + 1 < bridge.line_N.size(); ++i) {
     const Vector3& p = bridge.line_N[i];
     if (!space.FitsBin(p)) return std::nullopt;
-    nearest = std::min(nearest, DistanceToOthers(fragments, p, bridge.end_a / 2, bridge.end_b / 2));
+    nearest = lines.Distance(p, nearest, bridge.end_a / 2, bridge.end_b / 2);
     if (nearest < kClosestRadii * r) return std::nullopt;
     const Sight sight = space.Look(p);
     denied_in_a_row = sight == Sight::kSeenThrough ? denied_in_a_row + 1 : 0;
@@ -122,8 +114,8 @@ std::optional<double> CostOfPlace(const Bridge& bridge, const std::vector<Fragme
 }
 
 /// The cheapest bridge between two ends; nothing when every way is forbidden or too dear.
-std::optional<Bridge> BestWay(const std::vector<Fragment>& fragments, int i, int k,
-                              const HiddenSpace& space, double longest_m) {
+std::optional<Bridge> BestWay(const std::vector<Fragment>& fragments, const NearLines& lines, int i,
+                              int k, const HiddenSpace& space, double longest_m) {
   const FragmentEnd& a = fragments[static_cast<std::size_t>(i / 2)].ends[i % 2];
   const FragmentEnd& b = fragments[static_cast<std::size_t>(k / 2)].ends[k % 2];
   const double chord = (b.p_N - a.p_N).norm();
@@ -137,7 +129,7 @@ std::optional<Bridge> BestWay(const std::vector<Fragment>& fragments, int i, int
   std::optional<Bridge> best;
   for (const double stiffness : {1.0, 0.4}) {
     Bridge way{i, k, Cubic(a, b, stiffness), 0.0, 0.0};
-    const auto cost = CostOfPlace(way, fragments, space);
+    const auto cost = CostOfPlace(way, lines, space);
     if (!cost) continue;
     way.cost = cost_of_shape + *cost;
     way.length_m = Length(way.line_N);
@@ -151,11 +143,13 @@ std::optional<Bridge> BestWay(const std::vector<Fragment>& fragments, int i, int
 std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const HiddenSpace& space,
                                 double longest_m) {
   std::vector<Bridge> out;
+  NearLines lines;
+  for (const Fragment& fragment : fragments) lines.Add(fragment.line_N);
   const int ends = 2 * static_cast<int>(fragments.size());
   for (int i = 0; i < ends; ++i) {
     for (int k = i + 1; k < ends; ++k) {
       if (i / 2 == k / 2) continue;
-      auto bridge = BestWay(fragments, i, k, space, longest_m);
+      auto bridge = BestWay(fragments, lines, i, k, space, longest_m);
       if (bridge) out.push_back(std::move(*bridge));
     }
   }

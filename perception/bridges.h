@@ -42,8 +42,4 @@ struct Bridge {
 std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const HiddenSpace& space,
                                 double longest_m);
 
-/// Smallest distance of `p_N` to the fragments, those named left out.
-double DistanceToOthers(const std::vector<Fragment>& fragments, const Vector3& p_N, int except_a,
-                        int except_b);
-
 }  // namespace tubetwin

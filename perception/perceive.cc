@@ -10,6 +10,7 @@
 #include "perception/coverage.h"
 #include "perception/fragments.h"
 #include "perception/joining.h"
+#include "perception/near_lines.h"
 #include "perception/view_image.h"
 
 namespace tubetwin {
@@ -81,15 +82,14 @@ int CountUnexplained(const Surface& surface, const std::vector<PerceivedTube>& t
   };
   for (const SurfacePoint& p : surface.points) add(p.p_N);
   for (const Eigen::Vector3f& p : surface.rejected_N) add(p);
+  NearLines lines;
+  for (const PerceivedTube& tube : tubes) lines.Add(tube.centerline_N);
+  const double explained_m = radius_m + 0.004;
   int unexplained = 0;
   for (std::size_t i = 0; i < count.size(); ++i) {
     if (count[i] < kFewest) continue;
     const Vector3 p = (sum[i] / static_cast<float>(count[i])).cast<double>();
-    double nearest = 1e9;
-    for (const PerceivedTube& tube : tubes) {
-      nearest = std::min(nearest, Closest(tube.centerline_N, p).distance_m);
-    }
-    unexplained += nearest > radius_m + 0.004;
+    unexplained += lines.Distance(p, 2.0 * explained_m) > explained_m;
   }
   return unexplained;
 }

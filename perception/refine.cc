@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
-
 #include "hw_bridge/base/error.h"
 
 namespace tubetwin {
@@ -30,44 +27,77 @@ struct Foot {
   bool end = false;  ///< Beyond the first or last node.
 };
 
-/// Among the segments `from` to `to`, the latter excluded.
-Foot FindFoot(const Polyline& line, const Vector3& p, std::size_t from, std::size_t to) {
-  Foot best;
-  double nearest = 1e30;
-  for (std::size_t k = from; k < to; ++k) {
-    const Vector3 d = line[k + 1] - line[k];
-    const double free = (p - line[k]).dot(d) / std::max(d.squaredNorm(), 1e-18);
-    const double u = std::clamp(free, 0.0, 1.0);
-    const double distance = (line[k] + u * d - p).squaredNorm();
-    if (distance >= nearest) continue;
-    nearest = distance;
-    best.node = static_cast<int>(k);
-    best.u = u;
-    best.end = (k == 0 && free < 0.0) || (k + 2 == line.size() && free > 1.0);
+/// The curve's pieces as the searches need them.
+class Pieces {
+ public:
+  explicit Pieces(const Polyline& line) : line_(line), steps_(line.size() - 1) {
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      const Vector3 d = line[k + 1] - line[k];
+      steps_[k] = {d, 1.0 / std::max(d.squaredNorm(), 1e-18)};
+    }
   }
-  return best;
-}
 
-/// Feet of all points anew; each moves by a few segments at most from one iteration to the next.
+  int count() const { return static_cast<int>(steps_.size()); }
+
+  /// Nearest of the pieces `from` to `to`, the latter excluded.
+  Foot Find(const Vector3& p, int from, int to) const {
+    Foot best;
+    double nearest = 1e30;
+    for (int k = from; k < to; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      const Vector3 w = p - line_[i];
+      const double free = w.dot(steps_[i].d) * steps_[i].inverse;
+      const double u = std::clamp(free, 0.0, 1.0);
+      const double distance = (w - u * steps_[i].d).squaredNorm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      best = {k, u, (k == 0 && free < 0.0) || (k + 1 == count() && free > 1.0)};
+    }
+    return best;
+  }
+
+  /// The first search: the nearest of every fourth node, then the pieces around it.
+  Foot FindAnywhere(const Vector3& p) const {
+    constexpr std::size_t kStride = 4;
+    std::size_t best = 0;
+    double nearest = 1e30;
+    for (std::size_t k = 0; k < line_.size(); k += kStride) {
+      const double distance = (line_[k] - p).squaredNorm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      best = k;
+    }
+    const int k = static_cast<int>(best), reach = static_cast<int>(kStride) + 1;
+    return Find(p, std::max(0, k - reach), std::min(count(), k + reach));
+  }
+
+  /// From a foot that was right before the curve moved a little.
+  Foot FindFrom(const Vector3& p, Foot foot) const {
+    for (int tries = 0; tries < 4; ++tries) {
+      const Foot next = Find(p, std::max(0, foot.node - 1), std::min(count(), foot.node + 2));
+      if (next.node == foot.node) return next;
+      foot = next;
+    }
+    return foot;
+  }
+
+ private:
+  struct Step {
+    Vector3 d;
+    double inverse;  ///< 1 / |d|^2.
+  };
+  const Polyline& line_;
+  std::vector<Step> steps_;
+};
+
 void UpdateFeet(const Polyline& line, const std::vector<SurfacePoint>& points,
                 std::vector<Foot>& feet) {
-  constexpr std::size_t kReach = 3;
+  const Pieces pieces(line);
   const bool first = feet.empty();
   feet.resize(points.size());
-  const std::size_t segments = line.size() - 1;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto k = static_cast<std::size_t>(feet[i].node);
-    const std::size_t from = first || k < kReach ? 0 : k - kReach;
-    const std::size_t to = first ? segments : std::min(segments, k + kReach + 1);
-    feet[i] = FindFoot(line, points[i].p_N.cast<double>(), from, to);
-  }
-}
-
-using Triplets = std::vector<Eigen::Triplet<double>>;
-
-void AddBlock(Triplets& triplets, int row, int column, const Matrix3& block) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) triplets.emplace_back(3 * row + i, 3 * column + j, block(i, j));
+    const Vector3 p = points[i].p_N.cast<double>();
+    feet[i] = first ? pieces.FindAnywhere(p) : pieces.FindFrom(p, feet[i]);
   }
 }
 
@@ -82,15 +112,16 @@ struct Equations {
         right(n, Vector3::Zero()),
         weight(n, 0.0) {}
 
-  /// One measurement: the curve's point at `foot` shall move by `step` along the directions in H.
-  void Add(const Foot& foot, const Matrix3& H, const Vector3& step, double w) {
+  /// One measurement: the curve's point at `foot` shall move so that H step = g. `w`: what it adds
+  /// to the weight of its nodes.
+  void Add(const Foot& foot, const Matrix3& H, const Vector3& g, double w) {
     const auto k = static_cast<std::size_t>(foot.node);
     const double a = 1.0 - foot.u, b = foot.u;
-    own[k] += w * a * a * H;
-    own[k + 1] += w * b * b * H;
-    next[k] += w * a * b * H;
-    right[k] += w * a * (H * step);
-    right[k + 1] += w * b * (H * step);
+    own[k] += a * a * H;
+    own[k + 1] += b * b * H;
+    next[k] += a * b * H;
+    right[k] += a * g;
+    right[k + 1] += b * g;
     weight[k] += w * a;
     weight[k + 1] += w * b;
   }
@@ -114,38 +145,86 @@ Equations Linearize(const Polyline& line, const std::vector<SurfacePoint>& point
   Equations eq(line.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SurfacePoint& point = points[i];
-    const Vector3 p = point.p_N.cast<double>();
     const Foot& foot = feet[i];
     const auto k = static_cast<std::size_t>(foot.node);
     const Vector3 c = line[k] + foot.u * (line[k + 1] - line[k]);
-    const Vector3 out = p - c;
+    const Vector3 out = point.p_N.cast<double>() - c;
     const double distance = out.norm();
     const double residual = distance - r;
     if (std::abs(residual) > kOutlier_m || distance < 1e-6) continue;
     const double q = kScale_m * kScale_m / (kScale_m * kScale_m + residual * residual);
     const double w = point.weight * q * q;
-    const Vector3 direction = out / distance;
-    eq.Add(foot, direction * direction.transpose(), residual * direction, w);
+    Matrix3 H = (w / (distance * distance)) * out * out.transpose();
+    Vector3 g = (w * residual / distance) * out;
+    double weight = w;
     const Vector3 pull = point.a_N.cast<double>() - c;
-    if (pull.norm() < kOutlier_m) eq.Add(foot, kAxisWeight * Matrix3::Identity(), pull, w);
+    if (pull.squaredNorm() < kOutlier_m * kOutlier_m) {
+      H.diagonal().array() += kAxisWeight * w;
+      g += kAxisWeight * w * pull;
+      weight += w;
+    }
+    eq.Add(foot, H, g, weight);
   }
   eq.Cap();
   return eq;
 }
 
+/// A symmetric positive definite system whose entries lie at most kBand beside the diagonal.
+/// Factorised in place (Cholesky); a general sparse solver spends ten times as long on finding the
+/// band.
+class BandedSystem {
+ public:
+  static constexpr int kBand = 8;  ///< Second differences of nodes with three coordinates.
+  explicit BandedSystem(int n) : n_(n), lower_(static_cast<std::size_t>(n) * (kBand + 1), 0.0) {}
+
+  /// Entry with row - kBand <= column <= row.
+  double& At(int row, int column) {
+    return lower_[static_cast<std::size_t>(row) * (kBand + 1) +
+                  static_cast<std::size_t>(column - row + kBand)];
+  }
+
+  /// Adds a block and, by symmetry, its transpose; for blocks on the diagonal the lower half.
+  void AddBlock(int row, int column, const Matrix3& block) {
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        if (3 * column + j <= 3 * row + i) At(3 * row + i, 3 * column + j) += block(i, j);
+      }
+    }
+  }
+
+  void Solve(Eigen::VectorXd& x) {
+    for (int i = 0; i < n_; ++i) {
+      const int first = std::max(0, i - kBand);
+      for (int j = first; j <= i; ++j) {
+        double sum = At(i, j);
+        for (int k = std::max(first, j - kBand); k < j; ++k) sum -= At(i, k) * At(j, k);
+        TT_CHECK(j < i || sum > 0.0);
+        At(i, j) = j < i ? sum / At(j, j) : std::sqrt(sum);
+      }
+      for (int k = first; k < i; ++k) x[i] -= At(i, k) * x[k];
+      x[i] /= At(i, i);
+    }
+    for (int i = n_ - 1; i >= 0; --i) {
+      for (int k = i + 1; k <= std::min(n_ - 1, i + kBand); ++k) x[i] -= At(k, i) * x[k];
+      x[i] /= At(i, i);
+    }
+  }
+
+ private:
+  int n_;
+  std::vector<double> lower_;
+};
+
 /// Solves for the moves of all nodes with the penalty on second differences of the moved curve.
 void Step(Polyline& line, const Equations& eq) {
   const int n = static_cast<int>(line.size());
-  Triplets triplets;
-  Eigen::VectorXd right(3 * n);
+  BandedSystem system(3 * n);
+  Eigen::VectorXd move(3 * n);
   for (int k = 0; k < n; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    AddBlock(triplets, k, k, eq.own[i] + 1e-3 * Matrix3::Identity());
-    if (k + 1 < n) {
-      AddBlock(triplets, k, k + 1, eq.next[i]);
-      AddBlock(triplets, k + 1, k, eq.next[i].transpose());
-    }
-    right.segment<3>(3 * k) = eq.right[i];
+    system.AddBlock(k, k, eq.own[i] + 1e-3 * Matrix3::Identity());
+    if (k + 1 < n) system.AddBlock(k + 1, k, eq.next[i]);  // Symmetric itself.
+    move.segment<3>(3 * k) = eq.right[i];
   }
   const double bend = kScale_m * kScale_m / (kBend_m * kBend_m);
   const double coefficient[3] = {1.0, -2.0, 1.0};
@@ -153,18 +232,14 @@ void Step(Polyline& line, const Equations& eq) {
     const auto i = static_cast<std::size_t>(k);
     const Vector3 difference = line[i - 1] - 2.0 * line[i] + line[i + 1];
     for (int a = 0; a < 3; ++a) {
-      right.segment<3>(3 * (k - 1 + a)) -= bend * coefficient[a] * difference;
-      for (int b = 0; b < 3; ++b) {
-        AddBlock(triplets, k - 1 + a, k - 1 + b,
-                 bend * coefficient[a] * coefficient[b] * Matrix3::Identity());
+      move.segment<3>(3 * (k - 1 + a)) -= bend * coefficient[a] * difference;
+      for (int b = 0; b <= a; ++b) {
+        system.AddBlock(k - 1 + a, k - 1 + b,
+                        bend * coefficient[a] * coefficient[b] * Matrix3::Identity());
       }
     }
   }
-  Eigen::SparseMatrix<double> H(3 * n, 3 * n);
-  H.setFromTriplets(triplets.begin(), triplets.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(H);
-  TT_CHECK(solver.info() == Eigen::Success);
-  const Eigen::VectorXd move = solver.solve(right);
+  system.Solve(move);
   for (int k = 0; k < n; ++k) {
     Vector3 step = move.segment<3>(3 * k);
     if (step.norm() > 2.0 * kOutlier_m) step *= 2.0 * kOutlier_m / step.norm();

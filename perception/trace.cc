@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <queue>
-#include <unordered_map>
 
 namespace tubetwin {
 namespace {
@@ -12,7 +11,7 @@ namespace {
 constexpr double kOffCurve_m = 0.006;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// Voxels of one piece with their neighbours, by local number.
+/// Voxels of one piece, ascending, with their neighbours by local number.
 struct Graph {
   std::vector<int> voxels;
   std::vector<std::vector<int>> neighbours;
@@ -20,17 +19,16 @@ struct Graph {
 
 Graph MakeGraph(const AxisSpace& space, const std::vector<int>& voxels) {
   Graph graph{voxels, std::vector<std::vector<int>>(voxels.size())};
-  std::unordered_map<int, int> local;  // Only looked up, never iterated.
-  for (std::size_t i = 0; i < voxels.size(); ++i) local[voxels[i]] = static_cast<int>(i);
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     const AxisVoxel& v = space.voxels[static_cast<std::size_t>(voxels[i])];
     for (int dz = -1; dz <= 1; ++dz) {
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
           const int k = space.index.Find(v.ix + dx, v.iy + dy, v.iz + dz);
-          const auto found = local.find(k);
-          if (k >= 0 && k != voxels[i] && found != local.end()) {
-            graph.neighbours[i].push_back(found->second);
+          if (k < 0 || k == voxels[i]) continue;
+          const auto found = std::lower_bound(voxels.begin(), voxels.end(), k);
+          if (found != voxels.end() && *found == k) {
+            graph.neighbours[i].push_back(static_cast<int>(found - voxels.begin()));
           }
         }
       }
@@ -103,18 +101,29 @@ std::vector<char> NearShortestWay(const AxisSpace& space, const Graph& graph,
                                   const std::vector<double>& from_start,
                                   const std::vector<double>& from_end, double length) {
   std::vector<char> near(graph.voxels.size(), 0);
-  Polyline way;
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < near.size(); ++i) {
     if (from_start[i] + from_end[i] <= length + 1e-9) order.push_back({from_start[i], i});
   }
   std::sort(order.begin(), order.end());
-  for (const auto& [d, i] : order) {
-    way.push_back(space.voxels[static_cast<std::size_t>(graph.voxels[i])].mean_N.cast<double>());
-  }
+  auto mean = [&](std::size_t i) -> const Eigen::Vector3f& {
+    return space.voxels[static_cast<std::size_t>(graph.voxels[i])].mean_N;
+  };
+  // A place of the way that is near has about the voxel's own distance from the start.
+  constexpr double kWindow_m = 3.0 * kOffCurve_m;
+  constexpr float kNear2 = static_cast<float>(kOffCurve_m * kOffCurve_m);
   for (std::size_t i = 0; i < near.size(); ++i) {
-    const AxisVoxel& v = space.voxels[static_cast<std::size_t>(graph.voxels[i])];
-    near[i] = Closest(way, v.mean_N.cast<double>()).distance_m < kOffCurve_m;
+    const Eigen::Vector3f& p = mean(i);
+    auto it = std::lower_bound(order.begin(), order.end(),
+                               std::pair{from_start[i] - kWindow_m, std::size_t{0}});
+    for (; it != order.end() && it->first <= from_start[i] + kWindow_m; ++it) {
+      const Eigen::Vector3f& a = mean(it->second);
+      const Eigen::Vector3f d = it + 1 != order.end() ? Eigen::Vector3f(mean((it + 1)->second) - a)
+                                                      : Eigen::Vector3f::Zero();
+      const float u = std::clamp((p - a).dot(d) / std::max(d.squaredNorm(), 1e-12f), 0.0f, 1.0f);
+      near[i] = (p - a - u * d).squaredNorm() < kNear2;
+      if (near[i] != 0) break;
+    }
   }
   return near;
 }
