@@ -11,7 +11,7 @@
 #include "perception/fragments.h"
 #include "perception/joining.h"
 #include "perception/near_lines.h"
-#include "perception/view_image.h"
+#include "perception/view_raster.h"
 
 namespace tubetwin {
 namespace {
@@ -44,17 +44,35 @@ struct Surface {
 
 Surface LookAtViews(const std::vector<OrganizedCloud>& clouds, const Part& part, const Bin& bin,
                     const PerceptionConfig& config, Parallelism parallelism) {
+  const double pitch_m = std::min(config.block_m, 0.07 * part.radius_m);
+  std::vector<ViewRaster> rasters(clouds.size());
   Surface out;
   out.views.resize(clouds.size());
-  std::vector<SurfaceOfView> of_view(clouds.size());
-  const Foreground foreground(bin, kOutside * part.length_m);
-  const double pitch_m = std::min(config.block_m, 0.07 * part.radius_m);
   ParallelFor(static_cast<int>(clouds.size()), parallelism, [&](int i, int) {
     const auto k = static_cast<std::size_t>(i);
-    out.views[k] = MakeViewImage(clouds[k], pitch_m);
-    of_view[k] = FindSurface(out.views[k], foreground, part.radius_m);
+    rasters[k] = MakeViewRaster(clouds[k], pitch_m);
+    out.views[k] = MakeEmptyImage(rasters[k]);
   });
-  for (SurfaceOfView& s : of_view) {
+  std::vector<std::pair<std::size_t, int>> bands;  // View, band.
+  for (std::size_t k = 0; k < rasters.size(); ++k) {
+    const int rows = rasters[k].block_rows();
+    for (int b = 0; b * kRowsPerBand < rows; ++b) bands.emplace_back(k, b);
+  }
+  const Foreground foreground(bin, kOutside * part.length_m);
+  std::vector<SurfaceOfView> of_band(bands.size());
+  ParallelFor(static_cast<int>(bands.size()), parallelism, [&](int i, int) {
+    const auto [k, band] = bands[static_cast<std::size_t>(i)];
+    of_band[static_cast<std::size_t>(i)] =
+        LookAtBand(rasters[k], foreground, part.radius_m, band, out.views[k]);
+  });
+  std::size_t points = 0, rejected = 0;
+  for (const SurfaceOfView& s : of_band) {
+    points += s.points.size();
+    rejected += s.rejected_N.size();
+  }
+  out.points.reserve(points);
+  out.rejected_N.reserve(rejected);
+  for (const SurfaceOfView& s : of_band) {
     out.points.insert(out.points.end(), s.points.begin(), s.points.end());
     out.rejected_N.insert(out.rejected_N.end(), s.rejected_N.begin(), s.rejected_N.end());
   }

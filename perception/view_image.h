@@ -2,22 +2,24 @@
 
 #include <vector>
 
-#include "hw_bridge/base/cloud.h"
+#include "hw_bridge/base/frames.h"
 
 namespace tubetwin {
 
-/// One view reduced to blocks of pixels of about equal size in space: what all later steps look at.
-/// Columns and rows of blocks like the camera image; frame S, metres.
+/// Blocks of ViewRaster on the side of a cell of the depth image.
+inline constexpr int kBlocksPerCell = 2;
+
+/// Depths of one view, for the question what it sees at a place. Columns and rows like the camera
+/// image; frame S, metres.
 struct ViewImage {
-  int width = 0, height = 0;  ///< In blocks; 0 when the cloud holds no point.
-  double pitch_m = 0.0;       ///< Width of a block at the median depth.
-  /// Pinhole of the block image: column = fx x/z + cx, row = fy y/z + cy; a block's centre has
-  /// whole numbers.
+  int width = 0, height = 0;  ///< In cells; 0 when the cloud holds no point.
+  double pitch_m = 0.0;       ///< Width of a cell at the median depth.
+  /// Pinhole of the cells: column = fx x/z + cx, row = fy y/z + cy; a cell's centre has whole
+  /// numbers.
   double fx = 1.0, fy = 1.0, cx = 0.0, cy = 0.0;
   RigidTransform X_NS = RigidTransform::Identity();
   RigidTransform X_SN = RigidTransform::Identity();
-  std::vector<Eigen::Vector3f> p_S;  ///< Mean of a block; NaN when nothing or an edge is in it.
-  std::vector<float> z_near;         ///< Smallest and largest depth of a block; NaN without return.
+  std::vector<float> z_near;  ///< Smallest and largest depth of a cell; NaN without return.
   std::vector<float> z_far;
 
   std::size_t Index(int column, int row) const {
@@ -25,12 +27,6 @@ struct ViewImage {
            static_cast<std::size_t>(column);
   }
 };
-
-/// Reduces a cloud to blocks of about `pitch_m`. An organised cloud whose points are those of a
-/// pinhole camera keeps its raster; every other cloud is seen anew through a pinhole at its own
-/// pose, or, when points lie beside or behind that, at a place 1.5 m above the bin.
-/// Throws Error(kBadData) when the pose is not finite or the sizes disagree.
-ViewImage MakeViewImage(const OrganizedCloud& cloud, double pitch_m);
 
 /// What a view says about a piece of tube whose axis passes through a point, from least to most.
 enum class Sight {
