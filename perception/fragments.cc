@@ -134,11 +134,6 @@ Fragment FitTrace(const Trace& trace, const std::vector<SurfacePoint>& points,
 
 std::vector<Fragment> FindFragments(const AxisSpace& space, const std::vector<SurfacePoint>& points,
                                     double radius_m, Parallelism parallelism) {
-  std::vector<std::vector<int>> points_of(space.voxels.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto v = static_cast<std::size_t>(space.voxel_of_point[i]);
-    if (space.voxels[v].component >= 0) points_of[v].push_back(static_cast<int>(i));
-  }
   std::vector<std::vector<Fragment>> found(space.components.size());
   ParallelFor(static_cast<int>(found.size()), parallelism, [&](int c, int) {
     const auto k = static_cast<std::size_t>(c);
@@ -146,8 +141,9 @@ std::vector<Fragment> FindFragments(const AxisSpace& space, const std::vector<Su
     for (const Trace& trace : traces) {
       std::vector<int> chosen;
       for (const int v : trace.voxels) {
-        const auto& own = points_of[static_cast<std::size_t>(v)];
-        chosen.insert(chosen.end(), own.begin(), own.end());
+        const auto i = static_cast<std::size_t>(v);
+        chosen.insert(chosen.end(), space.points_of_voxels.begin() + space.first_point[i],
+                      space.points_of_voxels.begin() + space.first_point[i + 1]);
       }
       Fragment fragment = FitTrace(trace, points, chosen, radius_m);
       if (fragment.length_m > 0.0) found[k].push_back(std::move(fragment));

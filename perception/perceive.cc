@@ -82,31 +82,26 @@ Surface LookAtViews(const std::vector<OrganizedCloud>& clouds, const Part& part,
 /// Foreground cells of 5 mm, with at least a few points each, that lie on no tube.
 int CountUnexplained(const Surface& surface, const std::vector<PerceivedTube>& tubes,
                      double radius_m) {
-  constexpr float kPerMetre = 200.0f;
+  constexpr double kCell_m = 0.005;
   constexpr int kFewest = 6;
-  VoxelIndex index;
-  std::vector<int> count;
-  std::vector<Eigen::Vector3f> sum;
-  auto add = [&](const Eigen::Vector3f& p) {
-    const int v = index.Insert(static_cast<int>(std::floor(p.x() * kPerMetre)),
-                               static_cast<int>(std::floor(p.y() * kPerMetre)),
-                               static_cast<int>(std::floor(p.z() * kPerMetre)));
-    if (v == static_cast<int>(count.size())) {
-      count.push_back(0);
-      sum.push_back(Eigen::Vector3f::Zero());
-    }
-    ++count[static_cast<std::size_t>(v)];
-    sum[static_cast<std::size_t>(v)] += p;
-  };
-  for (const SurfacePoint& p : surface.points) add(p.p_N);
-  for (const Eigen::Vector3f& p : surface.rejected_N) add(p);
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(surface.points.size() + surface.rejected_N.size());
+  for (const SurfacePoint& p : surface.points) points.push_back(p.p_N);
+  points.insert(points.end(), surface.rejected_N.begin(), surface.rejected_N.end());
+  const VoxelGrid grid(points, kCell_m,
+                       [](const Eigen::Vector3f& p) -> const Eigen::Vector3f& { return p; });
+  std::vector<Eigen::Vector4f> sums(static_cast<std::size_t>(grid.size()),
+                                    Eigen::Vector4f::Zero());  // The last one counts.
+  for (const Eigen::Vector3f& p : points) {
+    sums[static_cast<std::size_t>(grid.NumberOf(grid.CellOf(p)))] += p.homogeneous();
+  }
   NearLines lines;
   for (const PerceivedTube& tube : tubes) lines.Add(tube.centerline_N);
   const double explained_m = radius_m + 0.004;
   int unexplained = 0;
-  for (std::size_t i = 0; i < count.size(); ++i) {
-    if (count[i] < kFewest) continue;
-    const Vector3 p = (sum[i] / static_cast<float>(count[i])).cast<double>();
+  for (const Eigen::Vector4f& sum : sums) {
+    if (sum[3] < kFewest) continue;
+    const Vector3 p = sum.hnormalized().cast<double>();
     unexplained += lines.Distance(p, 2.0 * explained_m) > explained_m;
   }
   return unexplained;
@@ -126,7 +121,7 @@ TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, c
   TubeScene scene;
   const Surface surface = LookAtViews(views, part, bin, config, parallelism);
   scene.timing_ms.filter = timer.Lap();
-  const AxisSpace axis_space = BuildAxisSpace(surface.points);
+  const AxisSpace axis_space = BuildAxisSpace(surface.points, parallelism);
   scene.timing_ms.segment = timer.Lap();
   const std::vector<Fragment> fragments =
       FindFragments(axis_space, surface.points, part.radius_m, parallelism);

@@ -21,18 +21,13 @@ Graph MakeGraph(const AxisSpace& space, const std::vector<int>& voxels) {
   Graph graph{voxels, std::vector<std::vector<int>>(voxels.size())};
   for (std::size_t i = 0; i < voxels.size(); ++i) {
     const AxisVoxel& v = space.voxels[static_cast<std::size_t>(voxels[i])];
-    for (int dz = -1; dz <= 1; ++dz) {
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-          const int k = space.index.Find(v.ix + dx, v.iy + dy, v.iz + dz);
-          if (k < 0 || k == voxels[i]) continue;
-          const auto found = std::lower_bound(voxels.begin(), voxels.end(), k);
-          if (found != voxels.end() && *found == k) {
-            graph.neighbours[i].push_back(static_cast<int>(found - voxels.begin()));
-          }
-        }
+    space.grid.ForNeighbours(v.cell, 1, [&](int k) {
+      if (k == voxels[i]) return;
+      const auto found = std::lower_bound(voxels.begin(), voxels.end(), k);
+      if (found != voxels.end() && *found == k) {
+        graph.neighbours[i].push_back(static_cast<int>(found - voxels.begin()));
       }
-    }
+    });
   }
   return graph;
 }
