@@ -1,7 +1,5 @@
 #include "perception/perceive.h"
 
-#include <chrono>
-
 #include "hw_bridge/base/error.h"
 #include "perception/assemble.h"
 #include "perception/axis_points.h"
@@ -10,7 +8,9 @@
 #include "perception/coverage.h"
 #include "perception/fragments.h"
 #include "perception/joining.h"
-#include "perception/near_lines.h"
+#include "perception/leao2020/modelling.h"
+#include "perception/step_timer.h"
+#include "perception/unexplained.h"
 #include "perception/view_raster.h"
 
 namespace tubetwin {
@@ -20,21 +20,6 @@ namespace {
 constexpr double kOutside = 0.6;
 /// Longest gap that is bridged, as a share of the tube's length.
 constexpr double kLongestGap = 0.4;
-
-/// Wall time of the steps; never part of a result.
-class StepTimer {
- public:
-  /// Milliseconds since the last call.
-  double Lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 struct Surface {
   std::vector<ViewImage> views;
@@ -79,44 +64,20 @@ Surface LookAtViews(const std::vector<OrganizedCloud>& clouds, const Part& part,
   return out;
 }
 
-/// Foreground cells of 5 mm, with at least a few points each, that lie on no tube.
-int CountUnexplained(const Surface& surface, const std::vector<PerceivedTube>& tubes,
-                     double radius_m) {
-  constexpr double kCell_m = 0.005;
-  constexpr int kFewest = 6;
-  std::vector<Eigen::Vector3f> points;
-  points.reserve(surface.points.size() + surface.rejected_N.size());
-  for (const SurfacePoint& p : surface.points) points.push_back(p.p_N);
-  points.insert(points.end(), surface.rejected_N.begin(), surface.rejected_N.end());
-  const VoxelGrid grid(points, kCell_m,
-                       [](const Eigen::Vector3f& p) -> const Eigen::Vector3f& { return p; });
-  std::vector<Eigen::Vector4f> sums(static_cast<std::size_t>(grid.size()),
-                                    Eigen::Vector4f::Zero());  // The last one counts.
-  for (const Eigen::Vector3f& p : points) {
-    sums[static_cast<std::size_t>(grid.NumberOf(grid.CellOf(p)))] += p.homogeneous();
-  }
-  NearLines lines;
-  for (const PerceivedTube& tube : tubes) lines.Add(tube.centerline_N);
-  const double explained_m = radius_m + 0.004;
-  int unexplained = 0;
-  for (const Eigen::Vector4f& sum : sums) {
-    if (sum[3] < kFewest) continue;
-    const Vector3 p = sum.hnormalized().cast<double>();
-    unexplained += lines.Distance(p, 2.0 * explained_m) > explained_m;
-  }
-  return unexplained;
-}
-
 }  // namespace
 
 void PerceptionConfig::Visit(ConfigVisitor& v) {
-  v.Choice("profile", "Method of modelling.", profile, {"best"});
+  v.Choice("profile", "Method of modelling.", profile, {"best", "leao2020"});
   v.Field("block_m", "Side of the pixel blocks that are averaged first.", block_m, {0.0001, 0.005});
+  v.Section("leao2020", "The profile leao2020.", leao2020);
 }
 
 TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, const Bin& bin,
                    const PerceptionConfig& config, Parallelism parallelism) {
   if (views.empty()) throw Error(ErrorKind::kBadData, "perception: no cloud was given");
+  if (config.profile == "leao2020") {
+    return PerceiveLeao2020(views, part, bin, config.block_m, config.leao2020, parallelism);
+  }
   StepTimer timer;
   TubeScene scene;
   const Surface surface = LookAtViews(views, part, bin, config, parallelism);
@@ -135,7 +96,11 @@ TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, c
   const Coverage coverage = MeasureCoverage(surface.views, bin, parallelism);
   scene.unseen_floor_m2 = coverage.unseen_floor_m2;
   scene.unseen_m3 = coverage.unseen_m3;
-  scene.unexplained_points = CountUnexplained(surface, scene.tubes, part.radius_m);
+  std::vector<Eigen::Vector3f> points_N;
+  points_N.reserve(surface.points.size() + surface.rejected_N.size());
+  for (const SurfacePoint& p : surface.points) points_N.push_back(p.p_N);
+  points_N.insert(points_N.end(), surface.rejected_N.begin(), surface.rejected_N.end());
+  scene.unexplained_points = CountUnexplained(points_N, scene.tubes, part.radius_m);
   scene.timing_ms.crossings = timer.Lap();
   TubeScene::Timing& t = scene.timing_ms;
   t.total = t.filter + t.segment + t.fit + t.join + t.crossings;

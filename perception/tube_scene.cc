@@ -47,6 +47,7 @@ Json TubeToJson(const PerceivedTube& tube) {
   json["visible_fraction"] = tube.visible_fraction;
   json["confidence"] = tube.confidence;
   json["class"] = ToString(tube.tube_class);
+  if (tube.class_paper) json["class_paper"] = ToString(*tube.class_paper);
   json["over"] = tube.over;
   json["under"] = tube.under;
   Json visible = Json::array();
@@ -65,6 +66,7 @@ PerceivedTube TubeFromJson(const JsonView& view) {
   tube.visible_fraction = view.Field("visible_fraction").AsNumber(0.0, 1.0);
   tube.confidence = view.Field("confidence").AsNumber(0.0, 1.0);
   tube.tube_class = ClassFromJson(view.Field("class"));
+  if (const auto paper = view.Optional("class_paper")) tube.class_paper = ClassFromJson(*paper);
   tube.over = IdsFromJson(view.Field("over"));
   tube.under = IdsFromJson(view.Field("under"));
   tube.node_visible.assign(tube.centerline_N.size(), 1);

@@ -21,6 +21,8 @@ struct PerceivedTube {
   double visible_fraction = 0.0;  ///< Of the length.
   double confidence = 0.0;        ///< 0..1, from fit, bridges and the length prior.
   TubeClass tube_class = TubeClass::kFree;
+  /// By the occluded joints of the leao2020 profile; empty in other profiles.
+  std::optional<TubeClass> class_paper;
   std::vector<int> over;  ///< Ids of tubes that this one lies over, sorted, unique.
   std::vector<int> under;
   std::vector<char> node_visible;  ///< [centerline_N.size()] 1 where points were seen.

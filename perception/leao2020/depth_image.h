@@ -1,0 +1,11 @@
+#pragma once
+
+#include "hw_bridge/base/cloud.h"
+#include "perception/view_image.h"
+
+namespace tubetwin {
+
+/// The depth image of one cloud, cells about 2 `block_m` wide. Throws as MakeViewRaster.
+ViewImage MakeDepthImage(const OrganizedCloud& cloud, double block_m);
+
+}  // namespace tubetwin
