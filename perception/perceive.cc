@@ -9,6 +9,7 @@
 #include "perception/fragments.h"
 #include "perception/joining.h"
 #include "perception/leao2020/modelling.h"
+#include "perception/registration.h"
 #include "perception/step_timer.h"
 #include "perception/unexplained.h"
 #include "perception/view_raster.h"
@@ -22,6 +23,7 @@ constexpr double kOutside = 0.6;
 constexpr double kLongestGap = 0.4;
 
 struct Surface {
+  Registration registration;
   std::vector<ViewImage> views;
   std::vector<SurfacePoint> points;
   std::vector<Eigen::Vector3f> rejected_N;
@@ -36,8 +38,12 @@ Surface LookAtViews(const std::vector<OrganizedCloud>& clouds, const Part& part,
   ParallelFor(static_cast<int>(clouds.size()), parallelism, [&](int i, int) {
     const auto k = static_cast<std::size_t>(i);
     rasters[k] = MakeViewRaster(clouds[k], pitch_m);
-    out.views[k] = MakeEmptyImage(rasters[k]);
   });
+  if (config.register_views) out.registration = RegisterViews(rasters, bin, parallelism);
+  for (std::size_t k = 0; k < rasters.size(); ++k) {
+    if (config.register_views) rasters[k].X_NS = rasters[k].X_NS * out.registration.X_SbelievedS[k];
+    out.views[k] = MakeEmptyImage(rasters[k]);
+  }
   std::vector<std::pair<std::size_t, int>> bands;  // View, band.
   for (std::size_t k = 0; k < rasters.size(); ++k) {
     const int rows = rasters[k].block_rows();
@@ -69,6 +75,8 @@ Surface LookAtViews(const std::vector<OrganizedCloud>& clouds, const Part& part,
 void PerceptionConfig::Visit(ConfigVisitor& v) {
   v.Choice("profile", "Method of modelling.", profile, {"best", "leao2020"});
   v.Field("block_m", "Side of the pixel blocks that are averaged first.", block_m, {0.0001, 0.005});
+  v.Field("register_views", "Correct the believed poses by the floor and walls that are seen.",
+          register_views);
   v.Section("leao2020", "The profile leao2020.", leao2020);
 }
 

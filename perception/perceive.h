@@ -15,8 +15,9 @@ namespace tubetwin {
 /// Config table [perception]. Lengths in metres. Defaults are for the scanner of the cell.
 struct PerceptionConfig {
   std::string profile = "best";
-  double block_m = 0.0007;  ///< Side of the pixel blocks that are averaged first.
-  Leao2020Config leao2020;  ///< Used by the profile leao2020 only.
+  double block_m = 0.0007;     ///< Side of the pixel blocks that are averaged first.
+  bool register_views = true;  ///< Correct the believed poses by the floor and walls that are seen.
+  Leao2020Config leao2020;     ///< Used by the profile leao2020 only.
   void Visit(ConfigVisitor& v);
 };
 

@@ -22,6 +22,10 @@ struct ViewRaster {
   const Eigen::Vector3f* pixels_S() const {
     return cloud != nullptr ? cloud->p_SP.data() : seen_anew_S.data();
   }
+  const Eigen::Vector3f& At(int column, int row) const {
+    return pixels_S()[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(column)];
+  }
   int block_columns() const { return width / block; }
   int block_rows() const { return height / block; }
 };
