@@ -121,6 +121,8 @@ Fragment FitTrace(const Trace& trace, const std::vector<SurfacePoint>& points,
   out.rms_m = fit.rms_m;
   out.fit = fit.share;
   out.normal_spread = fit.normal_spread;
+  out.radius_m = fit.radius_m;
+  out.radius_weight = fit.radius_weight;
   for (int end = 0; end < 2; ++end) {
     FragmentEnd& e = out.ends[static_cast<std::size_t>(end)];
     e.p_N = end == 0 ? line.front() : line.back();

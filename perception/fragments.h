@@ -25,8 +25,9 @@ struct Fragment {
   double length_m = 0.0;
   double rms_m = 0.0;  ///< Of the surface points' distance from the tube, those within 2 mm.
   double fit = 0.0;    ///< 0..1, share of the surface points within 1 mm of the tube.
-  double normal_spread = 0.0;       ///< rms sine of the normals about their mean, around the axis.
-  std::array<FragmentEnd, 2> ends;  ///< At the first and the last node.
+  double normal_spread = 0.0;  ///< rms sine of the normals about their mean, around the axis.
+  double radius_m = 0.0, radius_weight = 0.0;  ///< As in TubeFit.
+  std::array<FragmentEnd, 2> ends;             ///< At the first and the last node.
 };
 
 /// Orders every component into a curve and refines it: nodes move so that the surface points lie

@@ -9,6 +9,7 @@
 #include "perception/fragments.h"
 #include "perception/joining.h"
 #include "perception/leao2020/modelling.h"
+#include "perception/radius.h"
 #include "perception/registration.h"
 #include "perception/step_timer.h"
 #include "perception/unexplained.h"
@@ -80,6 +81,23 @@ void PerceptionConfig::Visit(ConfigVisitor& v) {
   v.Section("leao2020", "The profile leao2020.", leao2020);
 }
 
+namespace {
+
+/// Compares the radius and the poses that were given with what the points say.
+void AddWarnings(const Surface& surface, const std::vector<Fragment>& fragments,
+                 double part_radius_m, Parallelism parallelism, TubeScene& scene) {
+  scene.radius_estimate_m =
+      scene.tubes.empty() ? SearchRadius(surface.points, parallelism) : EstimateRadius(fragments);
+  if (scene.radius_estimate_m) {
+    const std::string text = RadiusWarning(part_radius_m, *scene.radius_estimate_m);
+    if (!text.empty()) scene.warnings.push_back(text);
+  }
+  const std::string text = RegistrationWarning(surface.registration);
+  if (!text.empty()) scene.warnings.push_back(text);
+}
+
+}  // namespace
+
 TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, const Bin& bin,
                    const PerceptionConfig& config, Parallelism parallelism) {
   if (views.empty()) throw Error(ErrorKind::kBadData, "perception: no cloud was given");
@@ -109,6 +127,7 @@ TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, c
   for (const SurfacePoint& p : surface.points) points_N.push_back(p.p_N);
   points_N.insert(points_N.end(), surface.rejected_N.begin(), surface.rejected_N.end());
   scene.unexplained_points = CountUnexplained(points_N, scene.tubes, part.radius_m);
+  AddWarnings(surface, fragments, part.radius_m, parallelism, scene);
   scene.timing_ms.crossings = timer.Lap();
   TubeScene::Timing& t = scene.timing_ms;
   t.total = t.filter + t.segment + t.fit + t.join + t.crossings;

@@ -247,6 +247,42 @@ void Step(Polyline& line, const Equations& eq) {
   }
 }
 
+/// Regression of points on normals, both across the axis, per slice around a node: its slope is the
+/// tube's radius, wherever the axis is.
+class RadiusSums {
+ public:
+  explicit RadiusSums(std::size_t nodes) : slices_(nodes) {}
+
+  /// `out`: from the axis to the point.
+  void Add(std::size_t node, const Vector3& out, const Vector3& n, const Vector3& t) {
+    Slice& s = slices_[node];
+    const Vector3 q = out - out.dot(t) * t, m = n - n.dot(t) * t;
+    s.count += 1.0;
+    s.q += q;
+    s.m += m;
+    s.qm += q.dot(m);
+    s.mm += m.squaredNorm();
+  }
+
+  void Finish(TubeFit& fit) const {
+    double qm = 0.0, mm = 0.0;
+    for (const Slice& s : slices_) {
+      if (s.count < 3.0) continue;
+      qm += s.qm - s.q.dot(s.m) / s.count;
+      mm += s.mm - s.m.squaredNorm() / s.count;
+    }
+    fit.radius_m = mm > 0.0 ? qm / mm : 0.0;
+    fit.radius_weight = mm;
+  }
+
+ private:
+  struct Slice {
+    double count = 0.0, qm = 0.0, mm = 0.0;
+    Vector3 q = Vector3::Zero(), m = Vector3::Zero();
+  };
+  std::vector<Slice> slices_;
+};
+
 TubeFit Judge(const Polyline& line, const std::vector<SurfacePoint>& points,
               const std::vector<Foot>& feet, double r) {
   TubeFit fit;
@@ -255,12 +291,20 @@ TubeFit Judge(const Polyline& line, const std::vector<SurfacePoint>& points,
   std::size_t near = 0, good = 0, inside = 0;
   std::vector<Vector3> mean(line.size(), Vector3::Zero());
   std::vector<std::pair<int, Vector3>> around;
+  RadiusSums radius(line.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const SurfacePoint& point = points[i];
     const Vector3 p = point.p_N.cast<double>();
     const Foot& foot = feet[i];
     const auto k = static_cast<std::size_t>(foot.node);
-    const double residual = (p - line[k] - foot.u * (line[k + 1] - line[k])).norm() - r;
+    const Vector3 step = line[k + 1] - line[k];
+    const Vector3 out = p - line[k] - foot.u * step;
+    const double residual = out.norm() - r;
+    const std::size_t node = k + (foot.u > 0.5 ? 1 : 0);
+    const Vector3 t = step.normalized();
+    if (std::abs(residual) < kOutlier_m && !foot.end) {
+      radius.Add(node, out, point.n_N.cast<double>(), t);
+    }
     ++near;
     if (std::abs(residual) < 0.002) {
       squares += residual * residual;
@@ -268,10 +312,8 @@ TubeFit Judge(const Polyline& line, const std::vector<SurfacePoint>& points,
     }
     if (std::abs(residual) > 0.001) continue;
     ++good;
-    const std::size_t node = k + (foot.u > 0.5 ? 1 : 0);
     fit.node_weight[node] += 1.0;
     if (foot.end) continue;
-    const Vector3 t = (line[k + 1] - line[k]).normalized();
     Vector3 n = point.n_N.cast<double>();
     n -= n.dot(t) * t;
     if (n.norm() < 1e-6) continue;
@@ -281,6 +323,7 @@ TubeFit Judge(const Polyline& line, const std::vector<SurfacePoint>& points,
   for (const auto& [node, n] : around) {
     spread += n.cross(mean[static_cast<std::size_t>(node)].normalized()).squaredNorm();
   }
+  radius.Finish(fit);
   fit.rms_m = inside > 0 ? std::sqrt(squares / static_cast<double>(inside)) : 0.0;
   fit.share = near > 0 ? static_cast<double>(good) / static_cast<double>(near) : 0.0;
   fit.normal_spread = around.empty() ? 0.0 : std::sqrt(spread / static_cast<double>(around.size()));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 
 #include <Eigen/Cholesky>
@@ -266,6 +267,18 @@ Registration RegisterViews(const std::vector<ViewRaster>& views, const Bin& bin,
   out.points = static_cast<int>(points);
   for (std::size_t v = 0; v < views.size(); ++v) out.X_SbelievedS[v] = Motion(x[v]);
   return out;
+}
+
+std::string RegistrationWarning(const Registration& registration) {
+  constexpr double kExpected_m = 0.0015;
+  if (registration.points == 0 || registration.before_m < kExpected_m) return {};
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "floor and walls are seen %.1f mm (rms) from where the poses put them, %.1f mm after "
+      "correction: check the hand-eye calibration and the bin's size",
+      1e3 * registration.before_m, 1e3 * registration.after_m);
+  return text;
 }
 
 }  // namespace tubetwin

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "hw_bridge/base/parallel.h"
@@ -25,5 +26,8 @@ struct Registration {
 /// do not depend on the thread count.
 Registration RegisterViews(const std::vector<ViewRaster>& views, const Bin& bin,
                            Parallelism parallelism);
+
+/// What to tell a user whose poses are off by more than a calibrated scanner's; else empty.
+std::string RegistrationWarning(const Registration& registration);
 
 }  // namespace tubetwin

@@ -130,6 +130,9 @@ Json ToJson(const TubeScene& scene) {
   json["unseen_m3"] = scene.unseen_m3;
   json["unseen_floor_m2"] = scene.unseen_floor_m2;
   json["unexplained_points"] = scene.unexplained_points;
+  json["radius_estimate_m"] =
+      scene.radius_estimate_m ? Json(*scene.radius_estimate_m) : Json(nullptr);
+  json["warnings"] = scene.warnings;
   const TubeScene::Timing& t = scene.timing_ms;
   json["timing_ms"] =
       Json{{"load", t.load}, {"filter", t.filter},       {"segment", t.segment}, {"fit", t.fit},
@@ -156,6 +159,14 @@ TubeScene TubeSceneFromJson(const JsonView& document) {
   }
   scene.unexplained_points =
       static_cast<int>(document.Field("unexplained_points").AsNumber(0, 2e9));
+  if (const auto radius = document.Optional("radius_estimate_m")) {
+    scene.radius_estimate_m = radius->AsNumber(0.0, 1.0);
+  }
+  if (const auto warnings = document.Optional("warnings")) {
+    for (std::size_t i = 0; i < warnings->Size(); ++i) {
+      scene.warnings.push_back(warnings->Item(i).AsString());
+    }
+  }
   const JsonView timing = document.Field("timing_ms");
   TubeScene::Timing& t = scene.timing_ms;
   t.load = timing.Field("load").AsNumber();

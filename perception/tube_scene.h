@@ -43,6 +43,8 @@ struct TubeScene {
   double unseen_m3 = 0.0;  ///< Volume over the floor that no view saw into.
   double unseen_floor_m2 = 0.0;
   int unexplained_points = 0;  ///< Points above the floor that belong to no tube (thinned count).
+  std::optional<double> radius_estimate_m;  ///< From the points alone; nothing when too few.
+  std::vector<std::string> warnings;        ///< Sentences for the user, such as of a wrong part.
   struct Timing {
     double load = 0, filter = 0, segment = 0, fit = 0, join = 0, crossings = 0, total = 0;
   } timing_ms;  ///< Wall time; left out of comparisons.

@@ -108,6 +108,8 @@ TEST_CASE("A scene survives writing and reading", "[unit]") {
   TubeScene scene = SceneOf({AlongX(0.0, kRadius), {{0.05, -0.1, 0.04}, {0.05, 0.3, 0.04}}});
   scene.unseen_m3 = 0.0125;
   scene.unseen_floor_m2 = 0.25;
+  scene.radius_estimate_m = 0.0131;
+  scene.warnings = {"the part is another"};
   scene.unexplained_points = 17;
   scene.timing_ms.total = 12.5;
   scene.threads = 2;

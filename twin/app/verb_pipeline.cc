@@ -8,6 +8,7 @@
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
 #include "hw_bridge/base/text.h"
+#include "perception/step_timer.h"
 #include "planner/arm_feasibility.h"
 #include "planner/choose.h"
 #include "planner/evaluator/evaluator.h"
@@ -158,12 +159,16 @@ int PerceiveClouds(const PerceiveOptions& given, const Common& common) {
   if (!given.bin.empty()) bin.size_m = ParseBinSize(given.bin);
   const Scenario scenario = LoadScenario({}, common);
   std::vector<OrganizedCloud> views;
+  StepTimer timer;
   for (const std::string& file : given.clouds) {
     views.push_back(ReadCloud(file));
     if (!given.pose.empty()) views.back().X_NS = ParsePose(given.pose);
     views.back().label.clear();  // The pipeline never sees labels.
   }
-  const TubeScene scene = Perceive(views, part, bin, scenario.perception, common.parallelism());
+  const double load_ms = timer.Lap();
+  TubeScene scene = Perceive(views, part, bin, scenario.perception, common.parallelism());
+  scene.timing_ms.load = load_ms;
+  for (const std::string& text : scene.warnings) Say(common, "warning: " + text);
   Json out = ToJson(scene);
   out["part"] = PartToJson(part);
   out["bin"] = ToJson(bin);
