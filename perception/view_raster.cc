@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "hw_bridge/base/error.h"
+#include "perception/voxel_grid.h"
 
 namespace tubetwin {
 namespace {
@@ -71,35 +72,33 @@ Pinhole FitPinhole(const OrganizedCloud& cloud) {
   return out;
 }
 
+/// Whether a point in S can be a scanner's: within 143 degrees and 10 m. Strays would blow up the
+/// image.
+bool MayBeSeen(const Eigen::Vector3f& p_S) {
+  constexpr float kWidest = 3.0f, kFarthest_m = 10.0f;
+  return p_S.z() >= kNearest_m && p_S.z() <= kFarthest_m &&
+         std::abs(p_S.x()) <= kWidest * p_S.z() && std::abs(p_S.y()) <= kWidest * p_S.z();
+}
+
 /// Side of the squares that hold one point each on average, from the occupied 5 mm cells.
 double PointPitch(const std::vector<Eigen::Vector3f>& points) {
   constexpr double kCell_m = 0.005;
-  std::vector<std::int64_t> cells;
-  cells.reserve(points.size());
-  for (const auto& p : points) {
-    const auto ix = static_cast<std::int64_t>(std::floor(p.x() / kCell_m));
-    const auto iy = static_cast<std::int64_t>(std::floor(p.y() / kCell_m));
-    cells.push_back(ix * 1000003 + iy);
-  }
-  std::sort(cells.begin(), cells.end());
-  const auto occupied = std::unique(cells.begin(), cells.end()) - cells.begin();
-  return kCell_m * std::sqrt(static_cast<double>(occupied) / static_cast<double>(points.size()));
+  const VoxelGrid cells(points, kCell_m, [](const Eigen::Vector3f& p) -> Eigen::Vector3f {
+    return {p.x(), p.y(), 0.0f};
+  });
+  return kCell_m * std::sqrt(cells.size() / static_cast<double>(points.size()));
 }
 
 /// The pinhole, without pixels, that sees all `points_S` about `pitch_m` apart.
 ViewRaster FrameAround(const std::vector<Eigen::Vector3f>& points_S, double pitch_m) {
   ViewRaster raster;
-  constexpr float kWidest = 3.0f;       // 143 degrees: a scanner sees less.
   constexpr double kMostPixels = 16e6;  // Coarser beyond, so that memory stays bounded.
   Eigen::AlignedBox2f box;
   std::vector<float> depths;
   for (const auto& p : points_S) {
-    const Eigen::Vector2f q = p.head<2>() / p.z();
-    if (q.cwiseAbs().maxCoeff() > kWidest) continue;
-    box.extend(q);
+    box.extend(Eigen::Vector2f(p.head<2>() / p.z()));
     depths.push_back(p.z());
   }
-  if (depths.empty()) return raster;
   std::nth_element(depths.begin(), depths.begin() + depths.size() / 2, depths.end());
   const double depth_m = depths[depths.size() / 2];
   const double area_m2 = depth_m * depth_m * box.sizes().cast<double>().prod();
@@ -125,9 +124,10 @@ ViewRaster SeeAnew(const std::vector<Eigen::Vector3f>& points_S, double pitch_m)
   const auto width = static_cast<std::size_t>(raster.width);
   std::vector<Pixel> pixels(width * static_cast<std::size_t>(raster.height));
   auto pixel_of = [&](const Eigen::Vector3f& p) -> Pixel* {
-    const long c = std::lround(raster.fx * p.x() / p.z() + raster.cx);
-    const long r = std::lround(raster.fy * p.y() / p.z() + raster.cy);
-    if (c < 0 || r < 0 || c >= raster.width || r >= raster.height) return nullptr;
+    const double x = raster.fx * p.x() / p.z() + raster.cx + 0.5;
+    const double y = raster.fy * p.y() / p.z() + raster.cy + 0.5;
+    if (!(x >= 0 && y >= 0 && x < raster.width && y < raster.height)) return nullptr;
+    const int c = static_cast<int>(x), r = static_cast<int>(y);
     return &pixels[static_cast<std::size_t>(r) * width + static_cast<std::size_t>(c)];
   };
   for (const auto& p : points_S) {
@@ -191,7 +191,7 @@ ViewRaster MakeViewRaster(const OrganizedCloud& cloud, double pitch_m) {
       const Eigen::Isometry3f X_VS = (X_NV.inverse() * cloud.X_NS).cast<float>();
       for (auto& p : points) p = X_VS * p;
     }
-    std::erase_if(points, [](const auto& p) { return p.z() < kNearest_m; });
+    std::erase_if(points, [](const auto& p) { return !MayBeSeen(p); });
     if (!points.empty()) raster = SeeAnew(points, pitch_m);
   }
   raster.X_NS = X_NV;

@@ -257,6 +257,7 @@ TEST_CASE("An unorganised cloud gives the same tubes as its image", "[unit]") {
   for (std::size_t i = mixed.size() - 1; i > 0; --i) {
     std::swap(mixed[i], mixed[stream.Index(static_cast<std::uint32_t>(i + 1))]);
   }
+  mixed.emplace_back(1e6f, -1e6f, 1e5f);  // A stray point far out changes nothing.
   cloud.p_SP = mixed;
   cloud.label.clear();
   cloud.height = 1;
@@ -266,6 +267,59 @@ TEST_CASE("An unorganised cloud gives the same tubes as its image", "[unit]") {
   CHECK(score.found == 2);
   CHECK(score.predicted == 2);
   CHECK(score.class_right == 2);
+}
+
+TEST_CASE("Eight views as one cloud without order give the tubes as well", "[unit]") {
+  ToyScene scene;
+  const double r = 0.0125;
+  scene.tubes_N = {Straight({0, 0, r}, 0.2, 0.5), Straight({0.02, 0.01, 3 * r}, 1.4, 0.5)};
+  Look look;
+  const RandomStream stream(14, 0, "eight views");
+  OrganizedCloud fused;
+  for (const RigidTransform& X_NS : EightPoses()) {
+    look.clouds.push_back(
+        ToyScan(scene, QuickCamera(), X_NS, stream.Fork("noise", look.clouds.size())));
+    look.X_NS_true.push_back(X_NS);
+    for (const auto& p : look.clouds.back().p_SP) {
+      if (IsValid(p)) fused.p_SP.push_back((X_NS * p.cast<double>()).cast<float>());
+    }
+  }
+  fused.height = 1;
+  fused.width = static_cast<int>(fused.p_SP.size());
+  const auto points = TubePointsOf(look.clouds, look.X_NS_true, 17);
+  const TubeScene seen =
+      Perceive({fused}, TubeOf(r, 0.5), scene.bin, PerceptionConfig{}, Parallelism{2});
+  const TubeScore score = ScoreTubes(seen, scene.tubes_N, points, r);
+  CHECK(score.found == 2);
+  CHECK(score.predicted == 2);
+  CHECK(score.class_right == 2);
+  CHECK(score.centerline_median_m < 0.0003);
+}
+
+TEST_CASE("One oblique view from any side gives the tubes", "[unit]") {
+  ToyScene scene;
+  const double r = 0.0125;
+  scene.tubes_N = {Straight({0, 0, r}, 0.2, 0.5), Straight({0.02, 0.01, 3 * r}, 1.4, 0.5),
+                   Straight({-0.2, 0.12, r}, 0.5, 0.3)};
+  for (const double yaw : {0.0, 1.1, 2.5, 4.0}) {
+    // 40 degrees off the vertical, turned about it and about the camera's own axis.
+    const RigidTransform X_NS = MakeTransform(RotZ(yaw), Vector3::Zero()) *
+                                MakeTransform(RotX(kPi + Radians(40)), Vector3(0, -0.7, 0.83)) *
+                                MakeTransform(RotZ(0.6 * yaw), Vector3::Zero());
+    ToyCamera camera = OverheadCamera();
+    camera.height = 1440;
+    Look look;
+    look.X_NS_true.push_back(X_NS);
+    look.clouds.push_back(ToyScan(scene, camera, X_NS, RandomStream(15, 0, "noise")));
+    const TubeScene seen = See(scene, look, 0.5);
+    const TubeScore score =
+        ScoreTubes(seen, scene.tubes_N, TubePointsOf(look.clouds, look.X_NS_true, 29), r);
+    INFO("yaw " << yaw);
+    CHECK(score.found == 3);
+    CHECK(score.predicted == 3);
+    CHECK(score.centerline_median_m < 0.0003);
+    CHECK(score.centerline_p95_m < 0.003);
+  }
 }
 
 TEST_CASE("The scene does not depend on threads or labels", "[unit]") {
