@@ -97,20 +97,49 @@ void AppendRuns(const Covering& over, int over_index, const Polyline& samples, d
   double nearest = 0.0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const Cover cover = FindCover(over, samples[k], r);
+    const double s_m = length_m * static_cast<double>(k) / static_cast<double>(samples.size() - 1);
+    if (cover.covered && !in_run) {
+      out.emplace_back();
+      out.back().under_from_m = s_m;
+    }
+    if (cover.covered) out.back().under_to_m = s_m;
     if (cover.covered && (!in_run || cover.horizontal_m < nearest)) {
-      if (!in_run) out.emplace_back();
       nearest = cover.horizontal_m;
       Crossing& crossing = out.back();
       crossing.over = over_index;
       crossing.under = under_index;
       crossing.at_over_m = cover.s_over_m;
-      crossing.at_under_m =
-          length_m * static_cast<double>(k) / static_cast<double>(samples.size() - 1);
+      crossing.at_under_m = s_m;
       crossing.gap_m = cover.height_m - 2.0 * r;
       crossing.confidence = 1.0;
     }
     in_run = cover.covered;
   }
+}
+
+/// Whether the node nearest to an arc length was seen.
+bool SeenAt(const PerceivedTube& tube, double s_m) {
+  const std::vector<double> s = ArcLengths(tube.centerline_N);
+  auto after = std::lower_bound(s.begin(), s.end(), s_m);
+  if (after == s.end()) after = std::prev(s.end());
+  if (after != s.begin() && s_m - *std::prev(after) < *after - s_m) --after;
+  return tube.node_visible[static_cast<std::size_t>(after - s.begin())] != 0;
+}
+
+/// The lower tube shows itself within `reach_m` before or behind the covered run, or ends there.
+bool ShowsBeside(const PerceivedTube& tube, double s_m, double sign, double reach_m) {
+  const double length_m = Length(tube.centerline_N);
+  for (double d = 0.0; d <= reach_m; d += 0.0025) {
+    const double s = s_m + sign * d;
+    if (s < 0.0 || s > length_m || SeenAt(tube, s)) return true;
+  }
+  return false;
+}
+
+bool IsVisible(const Crossing& c, const PerceivedTube& over, const PerceivedTube& under, double r) {
+  if (over.node_visible.empty() || under.node_visible.empty()) return true;
+  return SeenAt(over, c.at_over_m) && ShowsBeside(under, c.under_from_m, -1.0, 2.0 * r) &&
+         ShowsBeside(under, c.under_to_m, 1.0, 2.0 * r);
 }
 
 /// Probability-like certainty of one crossing: that of both tubes, less where the height of the
@@ -161,6 +190,7 @@ void AssignClasses(TubeScene& scene, double radius_m) {
     PerceivedTube& over = scene.tubes[static_cast<std::size_t>(c.over)];
     PerceivedTube& under = scene.tubes[static_cast<std::size_t>(c.under)];
     ++times_under[static_cast<std::size_t>(c.under)];
+    c.visible = IsVisible(c, over, under, radius_m);
     c.confidence = CrossingConfidence(c, over, under, radius_m);
     c.over = over.id;
     c.under = under.id;
@@ -171,6 +201,9 @@ void AssignClasses(TubeScene& scene, double radius_m) {
     PerceivedTube& tube = scene.tubes[i];
     SortUnique(tube.over);
     SortUnique(tube.under);
+    tube.hooked.clear();
+    std::set_intersection(tube.over.begin(), tube.over.end(), tube.under.begin(), tube.under.end(),
+                          std::back_inserter(tube.hooked));
     tube.tube_class = times_under[i] == 0   ? TubeClass::kFree
                       : times_under[i] == 1 ? TubeClass::kWeak
                                             : TubeClass::kStrong;

@@ -69,6 +69,7 @@ void ScorePairs(const TubeScene& scene, const std::vector<Polyline>& true_lines_
                             : under[t] == 1 ? TubeClass::kWeak
                                             : TubeClass::kStrong;
     score.class_right += truth == tube.tube_class;
+    score.covered += truth != TubeClass::kFree;
     score.covered_called_free += truth != TubeClass::kFree && tube.tube_class == TubeClass::kFree;
   }
   score.centerline_median_m = Quantile(errors, 0.5);
@@ -101,6 +102,7 @@ TubeScore ScoreTubes(const TubeScene& scene, const std::vector<Polyline>& true_l
   score.true_tubes = static_cast<int>(true_lines_N.size());
   score.predicted = static_cast<int>(scene.tubes.size());
   score.pair_of_true.assign(true_lines_N.size(), -1);
+  score.found_true.assign(true_lines_N.size(), 0);
   std::vector<double> visible(true_lines_N.size(), 0.0);
   for (const TubePoint& point : points) visible.at(static_cast<std::size_t>(point.tube)) += 1.0;
   const auto shared = Overlap(scene, true_lines_N.size(), points, kReachRadii * radius_m);
@@ -114,8 +116,9 @@ TubeScore ScoreTubes(const TubeScene& scene, const std::vector<Polyline>& true_l
     if (score.pair_of_true[t] < 0) continue;
     const auto p = static_cast<std::size_t>(score.pair_of_true[t]);
     hits += shared[t][p];
-    score.found += visible[t] > 0 && shared[t][p] >= kFoundRecall * visible[t] &&
-                   shared[t][p] >= kFoundPrecision * claimed[p];
+    score.found_true[t] = visible[t] > 0 && shared[t][p] >= kFoundRecall * visible[t] &&
+                          shared[t][p] >= kFoundPrecision * claimed[p];
+    score.found += score.found_true[t];
   }
   if (!points.empty()) score.micro_recall = hits / static_cast<double>(points.size());
   ScorePairs(scene, true_lines_N, visible, shared, radius_m, score);

@@ -30,7 +30,9 @@ struct TubeScore {
   int paired = 0;       ///< Pairs that share at least half of the true tube's points.
   int class_right = 0;  ///< Of these, class equal to that of the true curves.
   int covered_called_free = 0;
+  int covered = 0;                ///< Of the paired, truly under another tube.
   std::vector<int> pair_of_true;  ///< [true_tubes] index of the perceived tube, or -1.
+  std::vector<char> found_true;   ///< [true_tubes] 1 for those counted in `found`.
 };
 
 /// A visible point counts for the perceived curve nearest to it, at most 1.6 radii away.

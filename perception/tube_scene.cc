@@ -50,6 +50,7 @@ Json TubeToJson(const PerceivedTube& tube) {
   if (tube.class_paper) json["class_paper"] = ToString(*tube.class_paper);
   json["over"] = tube.over;
   json["under"] = tube.under;
+  json["hooked"] = tube.hooked;
   Json visible = Json::array();
   for (const char v : tube.node_visible) visible.push_back(v != 0 ? 1 : 0);
   json["node_visible"] = visible;
@@ -69,6 +70,7 @@ PerceivedTube TubeFromJson(const JsonView& view) {
   if (const auto paper = view.Optional("class_paper")) tube.class_paper = ClassFromJson(*paper);
   tube.over = IdsFromJson(view.Field("over"));
   tube.under = IdsFromJson(view.Field("under"));
+  if (const auto hooked = view.Optional("hooked")) tube.hooked = IdsFromJson(*hooked);
   tube.node_visible.assign(tube.centerline_N.size(), 1);
   if (const auto visible = view.Optional("node_visible")) {
     if (visible->Size() != tube.centerline_N.size()) {
@@ -82,9 +84,15 @@ PerceivedTube TubeFromJson(const JsonView& view) {
 }
 
 Json CrossingToJson(const Crossing& crossing) {
-  return Json{{"over", crossing.over},           {"under", crossing.under},
-              {"at_over_m", crossing.at_over_m}, {"at_under_m", crossing.at_under_m},
-              {"gap_m", crossing.gap_m},         {"confidence", crossing.confidence}};
+  return Json{{"over", crossing.over},
+              {"under", crossing.under},
+              {"at_over_m", crossing.at_over_m},
+              {"at_under_m", crossing.at_under_m},
+              {"gap_m", crossing.gap_m},
+              {"confidence", crossing.confidence},
+              {"under_from_m", crossing.under_from_m},
+              {"under_to_m", crossing.under_to_m},
+              {"visible", crossing.visible}};
 }
 
 Crossing CrossingFromJson(const JsonView& view) {
@@ -95,6 +103,10 @@ Crossing CrossingFromJson(const JsonView& view) {
   crossing.at_under_m = view.Field("at_under_m").AsNumber();
   crossing.gap_m = view.Field("gap_m").AsNumber();
   crossing.confidence = view.Field("confidence").AsNumber(0.0, 1.0);
+  crossing.under_from_m = crossing.under_to_m = crossing.at_under_m;
+  if (const auto from = view.Optional("under_from_m")) crossing.under_from_m = from->AsNumber();
+  if (const auto to = view.Optional("under_to_m")) crossing.under_to_m = to->AsNumber();
+  if (const auto visible = view.Optional("visible")) crossing.visible = visible->AsBool();
   return crossing;
 }
 

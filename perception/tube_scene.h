@@ -25,6 +25,7 @@ struct PerceivedTube {
   std::optional<TubeClass> class_paper;
   std::vector<int> over;  ///< Ids of tubes that this one lies over, sorted, unique.
   std::vector<int> under;
+  std::vector<int> hooked;         ///< Ids in both lists: each lies over the other somewhere.
   std::vector<char> node_visible;  ///< [centerline_N.size()] 1 where points were seen.
 };
 
@@ -34,6 +35,10 @@ struct Crossing {
   double at_over_m = 0.0, at_under_m = 0.0;  ///< Arc length from the first centerline node.
   double gap_m = 0.0;                        ///< Vertical distance of axes less both radii.
   double confidence = 0.0;
+  double under_from_m = 0.0, under_to_m = 0.0;  ///< The covered run, arc length of `under`.
+  /// Both tubes are seen at the place, the lower one beside the run; else the crossing is inferred
+  /// from bridged or completed parts.
+  bool visible = true;
 };
 
 /// All that perception says about one look into the bin.
@@ -51,7 +56,8 @@ struct TubeScene {
   int threads = 1;
 };
 
-/// Under/over runs, classes and the lists of ids, from centerlines alone: a tube is under another
+/// Under/over runs, classes and the lists of ids, from centerlines alone (`visible` and the
+/// confidences from the tubes' own): a tube is under another
 /// once per run of its samples that the other covers (within r horizontally, more than r above); 0
 /// free, 1 weak, 2 or more strong. Used on perceived and on true tubes alike.
 std::vector<Crossing> FindCrossings(const std::vector<Polyline>& lines_N, double radius_m);
