@@ -34,12 +34,19 @@ struct Bridge {
   int end_a = 0, end_b = 0;  ///< 2 * fragment + end.
   Polyline line_N;           ///< Both ends included, nodes at most kNodeStep_m apart.
   double length_m = 0.0;
-  double cost = 0.0;  ///< Bending, length, what the views do not confirm, closed ends.
+  /// Negative log-odds (nats) that it is true: bending, gap, what the views do not confirm, closed
+  /// ends. Below 0: more likely true than not.
+  double cost = 0.0;
 };
 
 /// All bridges that nothing forbids: along the whole way no view sees past it, it keeps off the
 /// axes of all other fragments, and it stays in the bin.
 std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const HiddenSpace& space,
                                 double longest_m);
+
+/// How far every end (2 * fragment + end) could go straight on without being seen, through another
+/// fragment or out of the bin: 0 for a closed end or one that stops in plain sight.
+std::vector<double> MeasureRooms(const std::vector<Fragment>& fragments, const HiddenSpace& space,
+                                 double longest_m);
 
 }  // namespace tubetwin

@@ -21,7 +21,7 @@ namespace {
 /// Tubes lean out over the walls, but not by more than this share of their length.
 constexpr double kOutside = 0.6;
 /// Longest gap that is bridged, as a share of the tube's length.
-constexpr double kLongestGap = 0.4;
+constexpr double kLongestGap = 0.65;
 
 struct Surface {
   Registration registration;
@@ -115,7 +115,8 @@ TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, c
   scene.timing_ms.fit = timer.Lap();
   const HiddenSpace hidden(surface.views, bin, part.radius_m);
   const std::vector<Bridge> bridges = FindBridges(fragments, hidden, kLongestGap * part.length_m);
-  const std::vector<Chain> chains = JoinFragments(fragments, bridges, part.length_m);
+  const std::vector<double> rooms_m = MeasureRooms(fragments, hidden, part.length_m);
+  const std::vector<Chain> chains = JoinFragments(fragments, bridges, rooms_m, part.length_m);
   scene.tubes = AssembleTubes(chains, fragments, bridges, hidden, bin, part.length_m);
   scene.timing_ms.join = timer.Lap();
   AssignClasses(scene, part.radius_m);
