@@ -64,13 +64,12 @@ void AddTools(std::vector<Shape>& shapes, const CellLayout& layout) {
   shapes.push_back(Box("gripper chassis", kFlange,
                        layout.X_FK * Translation(0, 0, kBaseHeight_m + chassis_half_m),
                        Vector3(kChassisHalfWidth_m, kChassisHalfClosing_m, chassis_half_m), false));
-  // Camera and projector stand a baseline apart, symmetrically in the housing; the camera's origin
-  // lies in the window.
+  // Camera and projector look out of the housing's front, which stands askew in S.
   const ScannerSpec spec;
   const Vector3 housing_half(0.5 * spec.housing_x_m, 0.5 * spec.housing_y_m,
                              0.5 * spec.housing_z_m);
   shapes.push_back(Box("scanner", kFlange,
-                       layout.X_FS * Translation(0.5 * spec.baseline_m, 0, -housing_half.z()),
+                       layout.X_FS * HousingPose(spec) * Translation(0, 0, -housing_half.z()),
                        housing_half, true));
   // A plate under the flange carries it: from the tool's axis to the near side of the housing.
   const Vector3 p_FS = layout.X_FS.translation();

@@ -8,10 +8,9 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kScanHeight_m = 0.515;  // scanner origin over the floor
-constexpr double kCovered_m = 0.13;      // everything up to here over the floor is seen
-/// Closed fingers reach this far below the scanner's origin (tool stack of CellLayout).
-constexpr double kTipsBelowScanner_m = 0.136;
+constexpr double kScanHeight_m = 0.515;   // scanner origin over the floor
+constexpr double kCovered_m = 0.13;       // everything up to here over the floor is seen
+constexpr double kTipsBeyondE_m = 0.019;  // closed fingers, with what they advance while closing
 constexpr double kTipsOverWall_m = 0.05;
 
 /// Places of the views along one direction, relative to the middle of the bin. The study's own
@@ -40,8 +39,10 @@ std::vector<double> ViewOffsets(double extent_m, double field_m) {
 
 std::vector<RigidTransform> DefaultScanPoses(const Bin& bin) {
   const ScannerSpec spec;
-  const double height_m =
-      std::max(kScanHeight_m, bin.wall_m() + kTipsOverWall_m + kTipsBelowScanner_m);
+  const CellLayout layout;
+  const double tips_below_m =
+      (layout.X_FS.inverse() * layout.X_FE.translation()).z() + kTipsBeyondE_m;
+  const double height_m = std::max(kScanHeight_m, bin.wall_m() + kTipsOverWall_m + tips_below_m);
   // Field at the top of what has to be seen, where it is smallest.
   const double depth_m = height_m - kCovered_m;
   constexpr double kEdge_m = 0.004;  // not counted on: the outermost pixels

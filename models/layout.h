@@ -14,8 +14,10 @@ struct CellLayout {
   // Tool stack.
   RigidTransform X_FK = Translation(0, 0, 0.033);  ///< Sensor's tool face.
   RigidTransform X_FE = Translation(0, 0, 0.177);  ///< Between the closed pads.
-  /// Scanner camera on a bracket at the flange above the sensor's tool face: it is not weighed.
-  RigidTransform X_FS = Translation(0, 0.115, 0.060);
+  /// Scanner camera on a bracket at the flange above the sensor's tool face: it is not weighed. The
+  /// camera looks along the flange's z, so the housing stands askew and its projector's end is the
+  /// lowest, 101 mm beyond the flange: over the bin's walls when the pads are at the floor.
+  RigidTransform X_FS = Translation(0, 0.115, 0.030);
 
   // Tray: surface centre, axes along B.
   RigidTransform X_BT = Translation(0.05, -0.78, 0.10);

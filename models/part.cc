@@ -1,6 +1,7 @@
 #include "models/part.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/frames.h"
@@ -59,6 +60,11 @@ Part Shipped(const EmbeddedText& text) {
 
 }  // namespace
 
+double Part::albedo() const {
+  return std::accumulate(colour_rgb.begin(), colour_rgb.end(), 0.0) /
+         static_cast<double>(colour_rgb.size());
+}
+
 void Part::Visit(ConfigVisitor& v) {
   v.Field("name", "what the part is called", name);
   v.Choice("kind", "rigid: one body; hose: a bending chain of links", kind, {"rigid", "hose"});
@@ -77,7 +83,10 @@ void Part::Visit(ConfigVisitor& v) {
            shape, {"arcs", "hooks", "polyline"});
   v.Field("bends", "number of bends, from and to", bends, 2, {1, 20});
   v.Field("bend_deg", "angle of one bend, from and to", bend_deg, 2, {0, 170});
-  v.Field("colour_rgb", "colour in pictures, 0 to 1", colour_rgb, 3, {0, 1});
+  v.Field("colour_rgb", "colour in pictures, 0 to 1; the mean is what the scanner's light meets",
+          colour_rgb, 3, {0, 1});
+  v.Field("gloss", "share of points that the scanner loses where the surface mirrors its light",
+          gloss, {0, 1});
 }
 
 std::vector<std::string> PartNames() {

@@ -26,7 +26,12 @@ struct Part {
   std::vector<double> bends = {2, 4};       ///< arcs, polyline: number of bends, from and to.
   std::vector<double> bend_deg = {10, 70};  ///< Angle of one bend, from and to.
   std::vector<double> colour_rgb = {0.85, 0.85, 0.82};
+  /// How much the surface mirrors, 0 matt to 1: what the scanner loses where it mirrors its
+  /// projector.
+  double gloss = 0.0;
 
+  /// Share of light that the surface scatters back: mean of the colour.
+  double albedo() const;
   bool is_hose() const { return kind == "hose"; }
   void Visit(ConfigVisitor& v);
 };

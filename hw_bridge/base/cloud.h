@@ -49,8 +49,11 @@ OrganizedCloud ReadPcd(const std::string& path);
 void WritePcd(const OrganizedCloud& cloud, const std::string& path);
 
 /// Writes binary little-endian PLY in metres: vertex x y z [intensity] [label] in raster order and
-/// frame S (invalid points 0 0 0, as PhoXi writes them), then PhoXi's elements `camera` (X_NS:
-/// position and axes of S) and `phoxi_frame_params` (width and height). Throws like WritePcd.
+/// frame S (invalid points 0 0 0, as PhoXi writes them), then PhoXi's elements in their order:
+/// `camera` (X_NS: position and axes of S), `phoxi_frame_params` (width and height) and, for an
+/// organised cloud, `camera_matrix` (pinhole with square pixels and central principal point, fitted
+/// to the points; pixel centres are whole numbers), `distortion_matrix` (zero), `camera_resolution`
+/// and `frame_binning` (1). Throws like WritePcd.
 void WritePly(const OrganizedCloud& cloud, const std::string& path);
 
 /// Reads ascii or binary little-endian PLY. Units: metres, unless the header says `comment units

@@ -43,9 +43,52 @@ void FillPly(const OrganizedCloud& cloud, std::size_t i, char* out) {
   if (!cloud.label.empty()) std::memcpy(out, &cloud.label[i], 4);
 }
 
+/// Focal length in pixels of the pinhole that an organised cloud fits; 0 when nothing tells it.
+double FittedFocal(const OrganizedCloud& cloud) {
+  double along = 0, square = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Eigen::Vector3f& p = cloud.p_SP[i];
+    if (!IsValid(p) || !(p.z() > 0)) continue;
+    const double column = static_cast<double>(i % cloud.width) + 0.5 - 0.5 * cloud.width;
+    const double row = static_cast<double>(i / cloud.width) + 0.5 - 0.5 * cloud.height;
+    const double x = p.x() / p.z(), y = p.y() / p.z();
+    along += column * x + row * y;
+    square += x * x + y * y;
+  }
+  return square > 0 ? along / square : 0.0;
+}
+
 template <class T>
 void Append(std::string& out, T value) {
   out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+constexpr int kDistortions = 14;
+
+void AddPinholeHeader(std::string& header) {
+  const auto numbered = [&](const char* element, const char* name, int count) {
+    header += std::string("element ") + element + " 1\n";
+    for (int i = 0; i < count; ++i) {
+      header += std::string("property float ") + name + std::to_string(i) + "\n";
+    }
+  };
+  numbered("camera_matrix", "cm", 9);
+  numbered("distortion_matrix", "dm", kDistortions);
+  header +=
+      "element camera_resolution 1\nproperty uint width\nproperty uint height\n"
+      "element frame_binning 1\nproperty uint horizontal\nproperty uint vertical\n";
+}
+
+void AddPinhole(const OrganizedCloud& cloud, std::string& trailer) {
+  const auto focal_px = static_cast<float>(FittedFocal(cloud));
+  const float centre_x = 0.5f * (cloud.width - 1), centre_y = 0.5f * (cloud.height - 1);
+  for (const float v : {focal_px, 0.0f, centre_x, 0.0f, focal_px, centre_y, 0.0f, 0.0f, 1.0f}) {
+    Append(trailer, v);
+  }
+  for (int i = 0; i < kDistortions; ++i) Append(trailer, 0.0f);
+  for (const int v : {cloud.width, cloud.height, 1, 1}) {
+    Append(trailer, static_cast<std::uint32_t>(v));
+  }
 }
 
 }  // namespace
@@ -92,7 +135,9 @@ void WritePly(const OrganizedCloud& cloud, const std::string& path) {
       "element phoxi_frame_params 1\nproperty uint frame_width\nproperty uint frame_height\n"
       "property uint frame_index\nproperty float frame_start_time\nproperty float frame_duration\n"
       "property float frame_computation_duration\nproperty float frame_transfer_duration\n"
-      "property int total_scan_count\nend_header\n";
+      "property int total_scan_count\n";
+  if (cloud.organized()) AddPinholeHeader(header);
+  header += "end_header\n";
   std::string trailer;
   const Matrix3 R_NS = cloud.X_NS.linear();
   for (int r = 0; r < 3; ++r) Append(trailer, cloud.X_NS.translation()[r]);
@@ -104,6 +149,7 @@ void WritePly(const OrganizedCloud& cloud, const std::string& path) {
   Append(trailer, std::uint32_t{0});
   for (int i = 0; i < 4; ++i) Append(trailer, 0.0f);
   Append(trailer, std::int32_t{1});
+  if (cloud.organized()) AddPinhole(cloud, trailer);
   const std::size_t record_size =
       12 + (cloud.intensity.empty() ? 0 : 4) + (cloud.label.empty() ? 0 : 4);
   WriteRecords(path, header, n, record_size, trailer, FillPly, cloud);

@@ -1,5 +1,6 @@
 #include "hw_bridge/base/random.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Random123/philox.h>
@@ -16,6 +17,18 @@ std::uint64_t Mix(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
   return x ^ (x >> 31);
+}
+
+/// Word 2 of the counter tells tables apart.
+constexpr std::uint32_t kDrawn = 0, kTable = 1;
+
+std::array<std::uint32_t, 4> Philox(std::uint64_t key, std::uint64_t counter, std::uint32_t table) {
+  const r123::Philox4x32::ctr_type at = {
+      {static_cast<std::uint32_t>(counter), static_cast<std::uint32_t>(counter >> 32), table, 0}};
+  const r123::Philox4x32::key_type with = {
+      {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)}};
+  const auto out = r123::Philox4x32()(at, with);
+  return {out[0], out[1], out[2], out[3]};
 }
 
 std::uint64_t HashText(std::string_view text) {
@@ -36,17 +49,15 @@ RandomStream RandomStream::Fork(std::string_view purpose, std::uint64_t index) c
 
 std::uint32_t RandomStream::NextBits() {
   if (used_ == 4) {
-    r123::Philox4x32 philox;
-    const r123::Philox4x32::ctr_type counter = {
-        {static_cast<std::uint32_t>(counter_), static_cast<std::uint32_t>(counter_ >> 32), 0, 0}};
-    const r123::Philox4x32::key_type key = {
-        {static_cast<std::uint32_t>(key_), static_cast<std::uint32_t>(key_ >> 32)}};
-    const auto out = philox(counter, key);
-    for (int i = 0; i < 4; ++i) block_[i] = out[i];
-    ++counter_;
+    const auto block = Philox(key_, counter_++, kDrawn);
+    std::copy(block.begin(), block.end(), block_);
     used_ = 0;
   }
   return block_[used_++];
+}
+
+std::array<std::uint32_t, 4> RandomStream::Block(std::uint64_t index) const {
+  return Philox(key_, index, kTable);
 }
 
 double RandomStream::Uniform() {

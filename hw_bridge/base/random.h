@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -21,6 +22,9 @@ class RandomStream {
   double Uniform(double low, double high);  ///< [low, high).
   double Normal();                          ///< Mean 0, sigma 1 (Box-Muller, no cache).
   double Normal(double mean, double sigma) { return mean + sigma * Normal(); }
+  /// Four words of the endless table that belongs to this stream, in any order; draws nothing.
+  /// Other numbers than NextBits gives.
+  std::array<std::uint32_t, 4> Block(std::uint64_t index) const;
   /// Integer in [0, n). Precondition: n > 0.
   std::uint32_t Index(std::uint32_t n);
 

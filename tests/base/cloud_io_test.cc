@@ -221,6 +221,116 @@ TEST_CASE("A PhoXi PLY is in millimetres and its points move into the camera's f
   CheckBad(folder.Write("b.ply", mirrored), "b.ply");
 }
 
+TEST_CASE("An organised PLY carries PhoXi's elements in their order, its pinhole fits the points",
+          "[unit]") {
+  const Folder folder;
+  OrganizedCloud cloud = SomeCloud(40, 30, false, false);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {  // A pinhole of 50 px.
+    Eigen::Vector3f& p = cloud.p_SP[i];
+    if (!IsValid(p)) continue;
+    p.x() = (static_cast<float>(i % 40) + 0.5f - 20.0f) / 50.0f * p.z();
+    p.y() = (static_cast<float>(i / 40) + 0.5f - 15.0f) / 50.0f * p.z();
+  }
+  WritePly(cloud, folder.File("a.ply"));
+  CheckSame(cloud, ReadCloud(folder.File("a.ply")));
+  const std::string file = ReadFile(folder.File("a.ply"));
+  std::size_t at = 0;
+  for (const char* element : {"vertex 1200", "camera 1", "phoxi_frame_params 1", "camera_matrix 1",
+                              "distortion_matrix 1", "camera_resolution 1", "frame_binning 1"}) {
+    const std::size_t next = file.find("\nelement " + std::string(element) + "\n", at);
+    REQUIRE(next != std::string::npos);
+    at = next;
+  }
+  // From the end: binning and resolution, 14 distortions, the matrix row by row.
+  float matrix[9];
+  std::memcpy(matrix, file.data() + file.size() - 16 - 14 * 4 - 9 * 4, sizeof matrix);
+  CHECK(matrix[0] == Approx(50.0f).epsilon(1e-5));
+  CHECK(matrix[2] == 19.5f);
+  CHECK(matrix[4] == matrix[0]);
+  CHECK(matrix[5] == 14.5f);
+  CHECK(matrix[8] == 1.0f);
+  std::uint32_t resolution[4];
+  std::memcpy(resolution, file.data() + file.size() - 16, sizeof resolution);
+  CHECK(resolution[0] == 40);
+  CHECK(resolution[1] == 30);
+}
+
+TEST_CASE("An unorganised PLY with other properties and faces is read as points", "[unit]") {
+  const Folder folder;
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\ncomment by hand\nelement vertex 3\n"
+      "property uchar red\nproperty double x\nproperty float nx\nproperty double y\n"
+      "property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const double x : {0.1, 0.2, 0.3}) {
+    text += '\x7f';
+    const double y = 0.01, z = 0.5;
+    const float nx = 1.0f;
+    text.append(reinterpret_cast<const char*>(&x), 8);
+    text.append(reinterpret_cast<const char*>(&nx), 4);
+    text.append(reinterpret_cast<const char*>(&y), 8);
+    text.append(reinterpret_cast<const char*>(&z), 8);
+  }
+  text += std::string("\x03\0\0\0\0\x01\0\0\0\x02\0\0\0", 13);
+  const OrganizedCloud cloud = ReadCloud(folder.Write("a.ply", text));
+  CHECK_FALSE(cloud.organized());
+  REQUIRE(cloud.size() == 3);
+  CHECK(cloud.p_SP[2] == Eigen::Vector3f(0.3f, 0.01f, 0.5f));
+  CHECK(cloud.X_NS.isApprox(RigidTransform::Identity()));
+  CheckBad(folder.Write("cut.ply", text.substr(0, text.size() - 13 - 20)), "cut.ply");
+}
+
+TEST_CASE("A whole PhoXi PLY in millimetres, every element, is read with its pose", "[unit]") {
+  const Folder folder;
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\n"
+      "property float y\nproperty float z\nproperty float nx\nproperty float ny\n"
+      "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "property float Texture32\nproperty float Depth32\nproperty float Confidence32\n"
+      "element camera 1\n";
+  for (const char* name : {"view_p", "x_axis", "y_axis", "z_axis"}) {
+    for (const char* axis : {"x", "y", "z"})
+      text += std::string("property float ") + name + axis + "\n";
+  }
+  text +=
+      "element phoxi_frame_params 1\nproperty uint32 frame_width\nproperty uint32 frame_height\n"
+      "property uint32 frame_index\nproperty float frame_start_time\n"
+      "property float frame_duration\nproperty float frame_computation_duration\n"
+      "property float frame_transfer_duration\nproperty int32 total_scan_count\n"
+      "element camera_matrix 1\n";
+  for (int i = 0; i < 9; ++i) text += "property float cm" + std::to_string(i) + "\n";
+  text += "element distortion_matrix 1\n";
+  for (int i = 0; i < 14; ++i) text += "property float dm" + std::to_string(i) + "\n";
+  text +=
+      "element camera_resolution 1\nproperty float width\nproperty float height\n"
+      "element frame_binning 1\nproperty float horizontal\nproperty float vertical\nend_header\n";
+  const auto add = [&](std::initializer_list<float> values) {
+    for (const float v : values) text.append(reinterpret_cast<const char*>(&v), 4);
+  };
+  // The robot's space: the camera stands at (100, 200, 500) mm and looks down.
+  for (const float x : {0.0f, 10.0f, 20.0f}) {
+    add({100 + x, 200, 50, 0, 0, 1});
+    text.append(3, '\x40');
+    add({128, 450, 0.1f});
+  }
+  add({0, 0, 0, 0, 0, 1});
+  text.append(3, '\0');
+  add({0, 0, 0});
+  add({100, 200, 500, 1, 0, 0, 0, -1, 0, 0, 0, -1});
+  const std::uint32_t frame[3] = {2, 2, 7};
+  text.append(reinterpret_cast<const char*>(frame), 12);
+  add({0, 0, 0, 0});
+  const std::int32_t count = 8;
+  text.append(reinterpret_cast<const char*>(&count), 4);
+  for (int i = 0; i < 9 + 14 + 4; ++i) add({1.0f});
+  const OrganizedCloud cloud = ReadCloud(folder.Write("a.ply", text));
+  CHECK(cloud.width == 2);
+  REQUIRE(cloud.height == 2);
+  CHECK((cloud.p_SP[1] - Eigen::Vector3f(0.01f, 0, 0.45f)).norm() < 1e-6f);
+  CHECK_FALSE(IsValid(cloud.p_SP[3]));
+  CHECK((cloud.X_NS.translation() - Vector3(0.1, 0.2, 0.5)).norm() < 1e-6);
+  CHECK((cloud.X_NS.linear() - RotX(kPi)).norm() < 1e-6);
+}
+
 TEST_CASE("Plain PLY is in metres; millimetres must be said, never guessed", "[unit]") {
   const Folder folder;
   auto text = [](const std::string& comment) {

@@ -25,14 +25,24 @@ const Pile& SevenTubes() {
 
 ScanGeometry Geometry() {
   ScanGeometry out;
+  const auto albedo = static_cast<float>(SevenTubes().part.albedo());
+  const auto gloss = static_cast<float>(SevenTubes().part.gloss);
   for (const PileTube& tube : SevenTubes().tubes) {
     const Polyline line_B = Transformed(SevenTubes().bin.X_BN, tube.centerline_N);
     for (std::size_t i = 1; i < line_B.size(); ++i) {
-      out.capsules.push_back({line_B[i - 1], line_B[i], tube.radius_m, kLabelFirstTube, 0.7f});
+      out.capsules.push_back(
+          {line_B[i - 1], line_B[i], tube.radius_m, kLabelFirstTube, albedo, gloss});
     }
   }
-  const Vector3 half(0.5, 0.5, 0.01);
-  out.boxes.push_back({SevenTubes().bin.X_BN * Translation(0, 0, -0.01), half, kLabelCell, 0.5f});
+  const Bin& bin = SevenTubes().bin;
+  const auto box = [&](const Vector3& centre_N, const Vector3& half_m) {
+    out.boxes.push_back({bin.X_BN * Translation(centre_N), half_m, kLabelCell, kCellAlbedo});
+  };
+  box({0, 0, -0.01}, {0.5, 0.5, 0.01});
+  for (const double side : {-1.0, 1.0}) {
+    box({side * (bin.half_x_m() + 0.005), 0, 0.5 * bin.wall_m()}, {0.005, 0.4, 0.5 * bin.wall_m()});
+    box({0, side * (bin.half_y_m() + 0.005), 0.5 * bin.wall_m()}, {0.5, 0.005, 0.5 * bin.wall_m()});
+  }
   return out;
 }
 
@@ -51,7 +61,7 @@ TubeScene Scene() {
   return scene;
 }
 
-/// One view; argument: 1 for 2064 x 1544, 0 for 1032 x 772. All cores.
+/// One view with every effect; argument: 1 for 2064 x 1544, 0 for 1032 x 772. All cores.
 void BM_Scan(benchmark::State& state) {
   ScanSettings settings;
   if (state.range(0) == 1) {

@@ -1,79 +1,16 @@
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 
 #include "hw_bridge/base/polyline.h"
+#include "tests/render/scan_fixture.h"
 #include "tests/support/catch.h"
-#include "twin/render/scan_geometry.h"
 
-namespace tubetwin {
+namespace tubetwin::test {
 namespace {
 
 constexpr double kFloatError_m = 2e-6;  // Single precision at half a metre, curved surface.
-constexpr std::uint32_t kTube = kLabelFirstTube;
-
-// All scenes are laid out in S: X_BS is the identity.
-ScanGeometry::Box Plate(double z_m, std::uint32_t label = kLabelCell) {
-  return {Translation(0, 0, z_m + 0.01), Vector3(1, 1, 0.01), label, 0.6f};
-}
-ScanGeometry::Capsule TubeAlongY(double x_m, double z_m) {
-  return {{x_m, -0.5, z_m}, {x_m, 0.5, z_m}, 0.0125, kTube, 0.8f};
-}
-OrganizedCloud Cast(const ScanGeometry& geometry, const ScanSettings& settings, int threads = 1) {
-  return CastScan(geometry, RigidTransform::Identity(), settings, RandomStream(1, 2, "scan"),
-                  {threads});
-}
-ScanSettings Exact() {
-  ScanSettings settings;
-  settings.noise = false;
-  settings.labels = true;
-  return settings;
-}
-int CountValid(const OrganizedCloud& cloud) {
-  int n = 0;
-  for (const Eigen::Vector3f& p : cloud.p_SP) n += IsValid(p);
-  return n;
-}
-
-/// Depth errors of the middle of a scan of a plate; rows of `width` values, NaN where invalid.
-struct Errors {
-  std::vector<double> values;
-  int width = 0;
-  double Sigma() const {
-    double sum = 0;
-    int n = 0;
-    for (const double e : values) {
-      if (std::isnan(e)) continue;
-      sum += e * e;
-      ++n;
-    }
-    return std::sqrt(sum / n);
-  }
-  double Correlation(int columns, int rows) const {
-    double sum = 0, squares = 0;
-    const int height = static_cast<int>(values.size()) / width;
-    for (int r = 0; r + rows < height; ++r) {
-      for (int c = 0; c + columns < width; ++c) {
-        const double a = values[r * width + c], b = values[(r + rows) * width + c + columns];
-        if (std::isnan(a) || std::isnan(b)) continue;
-        sum += a * b;
-        squares += 0.5 * (a * a + b * b);
-      }
-    }
-    return sum / squares;
-  }
-};
-Errors ErrorsOf(const OrganizedCloud& noisy, const OrganizedCloud& exact) {
-  Errors out;
-  for (int r = noisy.height / 3; r < 2 * noisy.height / 3; ++r) {
-    for (int c = noisy.width / 3; c < 2 * noisy.width / 3; ++c) {
-      const std::size_t i = static_cast<std::size_t>(r) * noisy.width + c;
-      out.values.push_back(noisy.p_SP[i].z() - exact.p_SP[i].z());
-    }
-  }
-  out.width = 2 * noisy.width / 3 - noisy.width / 3;
-  return out;
-}
 
 TEST_CASE("Without noise every point lies exactly on the plate or the tube", "[render]") {
   ScanGeometry geometry;
@@ -164,114 +101,13 @@ TEST_CASE("A tube's shadow lies on the plate exactly where the projector's tange
   CHECK(lit > 500);
 }
 
-TEST_CASE("Depth noise has the stated sigma at every distance, angle and scale", "[render]") {
-  constexpr double kSigmaTolerance = 0.10;  // The rule's own; sampling error is below 1 %.
-  struct Case {
-    double z_m, tilt_deg, scale;
-  };
-  for (const Case c :
-       {Case{0.442, 0, 1}, Case{0.515, 0, 1}, Case{0.442, 0, 2}, Case{0.442, 50, 1}}) {
-    ScanGeometry geometry;
-    // Tilted towards the projector about y.
-    geometry.boxes.push_back(
-        {Translation(0, 0, c.z_m) * MakeTransform(RotY(-Radians(c.tilt_deg)), Vector3::Zero()) *
-             Translation(0, 0, 0.01),
-         Vector3(1, 1, 0.01), kLabelCell, 0.6f});
-    ScanSettings settings;
-    settings.noise_scale = c.scale;
-    const OrganizedCloud noisy = Cast(geometry, settings);
-    const OrganizedCloud exact = Cast(geometry, Exact());
-    double expected = 0;  // Root mean square over the same pixels.
-    int n = 0;
-    const Vector3 normal = RotY(-Radians(c.tilt_deg)) * Vector3(0, 0, -1);
-    for (int r = 772 / 3; r < 2 * 772 / 3; ++r) {
-      for (int col = 1032 / 3; col < 2 * 1032 / 3; ++col) {
-        const Vector3 p = exact.p_SP[static_cast<std::size_t>(r) * 1032 + col].cast<double>();
-        const double cosine = -normal.dot(p.normalized());
-        expected += std::pow(0.00005 * c.scale * std::pow(p.z() / 0.442, 2) / cosine, 2);
-        ++n;
-      }
-    }
-    const Errors errors = ErrorsOf(noisy, exact);
-    INFO("z " << c.z_m << " tilt " << c.tilt_deg << " scale " << c.scale);
-    CHECK(errors.Sigma() == Approx(std::sqrt(expected / n)).epsilon(kSigmaTolerance));
-    // Correlated over 3 to 5 pixels in both directions, not more.
-    for (const bool rows : {false, true}) {
-      CHECK(errors.Correlation(rows ? 0 : 1, rows ? 1 : 0) > 0.7);
-      CHECK(errors.Correlation(rows ? 0 : 5, rows ? 5 : 0) < 0.05);
-    }
-  }
-}
-
-TEST_CASE("Drop-out is one half at 900 mm, at 340 mm and at 75 degrees", "[render]") {
-  auto share = [](const ScanGeometry& geometry, double half_width) {
-    ScanSettings settings;
-    const OrganizedCloud noisy = Cast(geometry, settings), exact = Cast(geometry, Exact());
-    int seen = 0, all = 0;
-    for (std::size_t i = 0; i < exact.size(); ++i) {
-      const Eigen::Vector3f& p = exact.p_SP[i];
-      if (!IsValid(p) || std::abs(p.x() / p.z()) > half_width) continue;
-      seen += IsValid(noisy.p_SP[i]);
-      ++all;
-    }
-    REQUIRE(all > 10000);
-    return static_cast<double>(seen) / all;
-  };
-  constexpr double kSampling = 0.02;  // Four sigma of 10,000 pixels.
-  ScanGeometry far, near, steep, middle;
-  far.boxes.push_back(Plate(0.900));
-  CHECK(share(far, 0.05) == Approx(0.5).margin(kSampling));
-  near.boxes.push_back(Plate(0.340));
-  CHECK(share(near, 0.05) == Approx(0.5).margin(kSampling));
-  middle.boxes.push_back(Plate(0.442));
-  CHECK(share(middle, 0.05) == 1.0);
-  steep.boxes.push_back(
-      {Translation(0, 0, 0.442) * MakeTransform(RotY(-Radians(75)), Vector3::Zero()) *
-           Translation(0, 0, 0.01),
-       Vector3(1, 1, 0.01), kLabelCell, 0.6f});
-  CHECK(share(steep, 0.01) == Approx(0.5).margin(kSampling));
-}
-
-TEST_CASE("Flying points appear only at depth edges, between both depths, without label",
-          "[render]") {
-  ScanGeometry geometry;
-  geometry.boxes.push_back(Plate(0.48));
-  geometry.boxes.push_back({Translation(0, 0, 0.43), Vector3(0.05, 0.05, 0.01), kTube, 0.5f});
-  ScanSettings settings;
-  settings.labels = true;
-  const OrganizedCloud cloud = Cast(geometry, settings);
-  int flying = 0, between = 0;
-  for (int r = 0; r < cloud.height; ++r) {
-    for (int c = 0; c < cloud.width; ++c) {
-      const std::size_t i = static_cast<std::size_t>(r) * cloud.width + c;
-      if (!IsValid(cloud.p_SP[i])) continue;
-      const double z = cloud.p_SP[i].z();
-      const bool off = z > 0.4205 && z < 0.4795;  // Ten sigma off both surfaces.
-      // Sides of the upper box are seen nowhere: the camera looks straight down on it.
-      between += off;
-      if (cloud.label[i] != kLabelNone) {
-        if (off) FAIL("pixel " << i << " flies at " << z << " with a label");
-        continue;
-      }
-      ++flying;
-      const double x = (c + 0.5 - 516) / 1267 * 0.42, y = (r + 0.5 - 386) / 1267 * 0.42;
-      constexpr double kPixels_m = 2 * 0.42 / 1267;  // The edge is at most one pixel away.
-      const double edge = std::max(std::abs(x), std::abs(y)) - 0.05;
-      if (std::abs(edge) > kPixels_m) FAIL("pixel " << i << " flies away from any edge");
-      if (z < 0.4195 || z > 0.4805) FAIL("pixel " << i << " flies outside both depths");
-    }
-  }
-  CHECK(flying > 50);
-  CHECK(between > flying / 2);
-}
-
 TEST_CASE("Range: soft by default, cut at the data sheet on request", "[render]") {
   for (const double z : {0.29, 0.31, 0.38, 0.39, 0.51, 0.53, 1.19, 1.21}) {
     ScanGeometry geometry;
     geometry.boxes.push_back(Plate(z));
     ScanSettings settings = Exact();
     CHECK((CountValid(Cast(geometry, settings)) > 0) == (z > 0.3 && z < 1.2));
-    settings.hard_range = true;
+    settings.effects.hard_range = true;
     CHECK((CountValid(Cast(geometry, settings)) > 0) == (z > 0.384 && z < 0.52));
   }
 }
@@ -319,7 +155,8 @@ TEST_CASE("An empty world gives an empty scan, the scanner's pose is respected",
   }
 }
 
-TEST_CASE("A full-resolution scan of seven tubes in a bin takes about a second", "[render]") {
+TEST_CASE("A full-resolution scan with every effect takes less than a second of processor time",
+          "[render]") {
   ScanGeometry geometry;
   geometry.boxes.push_back(Plate(0.515));
   geometry.boxes.push_back({Translation(0.3, 0, 0.47), Vector3(0.01, 0.4, 0.045), 1, 0.6f});
@@ -329,7 +166,7 @@ TEST_CASE("A full-resolution scan of seven tubes in a bin takes about a second",
     for (int k = 0; k < 12; ++k) {  // A bent tube of 12 capsules.
       const double angle = 0.3 * tube + 0.15 * k;
       const Vector3 q = p + 0.042 * Vector3(std::sin(angle), std::cos(angle), 0);
-      geometry.capsules.push_back({p, q, 0.0125, kTube + tube, 0.8f});
+      geometry.capsules.push_back({p, q, 0.0125, kTube + tube, 0.8f, 0.5f});
       p = q;
     }
   }
@@ -337,18 +174,16 @@ TEST_CASE("A full-resolution scan of seven tubes in a bin takes about a second",
   settings.width = 2064;
   settings.height = 1544;
   settings.labels = true;
-  double best_s = 1e9;
+  double least_s = 1e9;
   for (int n = 0; n < 3; ++n) {
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();  // Of all threads; waiting for a core does not count.
     const OrganizedCloud cloud = Cast(geometry, settings, 2);
-    best_s = std::min(
-        best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    least_s = std::min(least_s, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     CHECK(CountValid(cloud) > 2000000);
   }
-  WARN("2064 x 1544, two threads: " << best_s << " s (best of 3)");
-  constexpr double kLoadedMachine_s = 6.0;  // Tests share their cores.
-  CHECK(best_s < kLoadedMachine_s);
+  WARN("2064 x 1544: " << least_s << " s of processor time (least of 3)");
+  CHECK(least_s < 1.0);  // Measured 0.43.
 }
 
 }  // namespace
-}  // namespace tubetwin
+}  // namespace tubetwin::test

@@ -58,7 +58,8 @@ TEST_CASE("holding torques are those of the arm's masses in closed form") {
       sum += arm.links[i].mass_kg * (X_BL[i] * arm.links[i].centre_of_mass_m).z();
     }
     sum += kSensorMass_kg * (X_BF * Vector3(0, 0, 0.5 * layout.X_FK.translation().z())).z();
-    sum += kScannerMass_kg * (X_BF * (layout.X_FS * Vector3(0, 0, kScannerCentre_m))).z();
+    const Vector3 p_FScanner = layout.X_FS * (HousingPose({}) * Vector3(0, 0, kScannerCentre_m));
+    sum += kScannerMass_kg * (X_BF * p_FScanner).z();
     // The tool's centre of mass as the world has it now; its moment is small.
     const CellWorld& world = bench.impl().world;
     const int tool = IdOf(world.model(), mjOBJ_BODY, "tool");

@@ -4,6 +4,7 @@
 #include "tests/support/catch.h"
 #include "tests/twin_cell/cell_fixture.h"
 #include "twin/cell/truth.h"
+#include "twin/render/ray_scene.h"
 
 namespace tubetwin::test {
 namespace {
@@ -158,6 +159,46 @@ TEST_CASE("a scan takes its time, refuses a second one and sees tube, bin and po
   CHECK(floor > seen / 2);
   CHECK(tube > 50);
   CHECK(on_tube > 0.9 * tube);  // Flying pixels at the edges are the rest.
+}
+
+TEST_CASE("nothing of arm and gripper stands in the camera's view or in the projector's light") {
+  const Pile pile = OneTube("pvc_a", Vector3(0, 0, 0.0126));
+  Bench bench(pile, ScanOptions(pile));
+  Cell& cell = bench.cell();
+  Pinhole pinhole{258, 193, static_cast<float>(ScannerSpec{}.focal_px * 258 / 2064)};
+  const auto views = DefaultScanPoses(pile.bin);
+  for (const double width_m : {0.085, 0.0}) {
+    cell.gripper.Command({width_m, 0.1, 60.0});
+    for (const RigidTransform& X_BSView : {views.front(), views[views.size() / 2], views.back()}) {
+      const MotionResult there = bench.planner().PlanTransfer(
+          cell.arm.State().q, bench.planner().PoseOfEForScan(X_BSView), {});
+      REQUIRE(std::holds_alternative<CheckedTrajectory>(there));
+      REQUIRE(RunTrajectory(cell, std::get<CheckedTrajectory>(there)).status ==
+              WaitOutcome::Status::kDone);
+      const RigidTransform X_BS = Truth(bench.twin()).X_BS();
+      const ScanGeometry all = bench.impl().world.Geometry();
+      // The robot is nearer to the scanner than anything else can be.
+      constexpr double kRobot_m = 0.33;
+      const auto near = [&](const Vector3& p_B) { return (X_BS.inverse() * p_B).z() < kRobot_m; };
+      ScanGeometry others = all;
+      std::erase_if(others.capsules, [&](const auto& c) { return near(0.5 * (c.a + c.b)); });
+      std::erase_if(others.boxes, [&](const auto& b) { return near(b.X_BBox.translation()); });
+      REQUIRE(others.boxes.size() + 5 < all.boxes.size());  // Scanner, bracket, gripper are gone.
+      REQUIRE(others.boxes.size() >= 7);                    // Plate, tray, plinth, bin.
+      HitImage with(pinhole), without(pinhole);
+      RayScene(all, X_BS, {}).CastRows(pinhole, 0, pinhole.height, true, with);
+      RayScene(others, X_BS, {}).CastRows(pinhole, 0, pinhole.height, true, without);
+      int differ = 0;
+      for (int row = 0; row < pinhole.height; ++row) {
+        for (int column = 0; column < pinhole.width; ++column) {
+          const std::size_t i = with.Index(row, column);
+          differ +=
+              with.z_m[i] != without.z_m[i] || with.cos_projector[i] != without.cos_projector[i];
+        }
+      }
+      CHECK(differ == 0);
+    }
+  }
 }
 
 TEST_CASE("the hand-eye error moves the true scanner and not the believed one") {

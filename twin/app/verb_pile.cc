@@ -29,10 +29,7 @@ int Generate(const PileOptions& options, const Common& common) {
   const Scenario scenario = LoadScenario({}, common);
   const auto seed = static_cast<std::uint64_t>(scenario.seed);
   // The same draw as `run` makes, so that its start can be made alone.
-  const RoundPhysics physics =
-      scenario.physics.randomize
-          ? DrawPhysics(scenario.physics, part, RandomStream(seed, 0, "physics"))
-          : NominalPhysics(part);
+  const RoundPhysics physics = ScenarioPhysics(scenario, part);
   const SettleResult made =
       GeneratePile(part, bin, options.count, options.arrangement, seed, physics);
   if (made.status != SettleStatus::kSettled) {

@@ -29,18 +29,19 @@ struct ScanOptions {
 
 ScanGeometry GeometryOf(const Pile& pile) {
   ScanGeometry out;
-  constexpr float kBinAlbedo = 0.5f, kTubeAlbedo = 0.7f;
+  const auto albedo = static_cast<float>(pile.part.albedo());
+  const auto gloss = static_cast<float>(pile.part.gloss);
   for (std::size_t k = 0; k < pile.tubes.size(); ++k) {
     const Polyline line_B = Transformed(pile.bin.X_BN, pile.tubes[k].centerline_N);
     for (std::size_t i = 1; i < line_B.size(); ++i) {
       out.capsules.push_back({line_B[i - 1], line_B[i], pile.tubes[k].radius_m,
-                              kLabelFirstTube + static_cast<std::uint32_t>(k), kTubeAlbedo});
+                              kLabelFirstTube + static_cast<std::uint32_t>(k), albedo, gloss});
     }
   }
   const double x = pile.bin.half_x_m(), y = pile.bin.half_y_m(), h = 0.5 * pile.bin.wall_m();
   const double t = 0.5 * Bin::kWallThickness_m;
   const auto box = [&](const Vector3& centre_N, const Vector3& half_m) {
-    out.boxes.push_back({pile.bin.X_BN * Translation(centre_N), half_m, kLabelCell, kBinAlbedo});
+    out.boxes.push_back({pile.bin.X_BN * Translation(centre_N), half_m, kLabelCell, kCellAlbedo});
   };
   box({0, 0, -t}, {x + 2 * t, y + 2 * t, t});
   for (const double side : {-1.0, 1.0}) {
@@ -73,17 +74,9 @@ int ScanPile(const ScanOptions& scan, const Common& common) {
   const Pile pile = LoadPile(scan.pile, overrides);
   const Scenario scenario = LoadScenario({}, common);
   const std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
-  const RoundPhysics physics =
-      scenario.physics.randomize
-          ? DrawPhysics(scenario.physics, pile.part, RandomStream(seed, 0, "physics"))
-          : NominalPhysics(pile.part);
-  ScanSettings settings;
-  settings.noise_scale = physics.depth_noise_scale;
+  const RoundPhysics physics = ScenarioPhysics(scenario, pile.part);
+  ScanSettings settings = ScenarioScan(scenario, physics);
   settings.labels = scan.labels;
-  if (scenario.scan.resolution == "2064x1544") {
-    settings.width = settings.spec.full_width;
-    settings.height = settings.spec.full_height;
-  }
   const ScanGeometry geometry = GeometryOf(pile);
   const std::vector<RigidTransform> poses_BS = DefaultScanPoses(pile.bin);
   MakeFolder(common.out);

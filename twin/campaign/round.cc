@@ -106,12 +106,6 @@ class RoundRecorder : public CycleObserver {
   double attempt_began_ = 0.0;
 };
 
-RoundPhysics PhysicsOf(const Scenario& scenario, const Part& part) {
-  if (!scenario.physics.randomize) return NominalPhysics(part);
-  return DrawPhysics(scenario.physics, part,
-                     RandomStream(static_cast<std::uint64_t>(scenario.seed), 0, "physics"));
-}
-
 PickCycleSetup CycleSetup(const Scenario& scenario, const Part& part, const RoundOptions& options) {
   PickCycleSetup setup;
   setup.part = part;
@@ -150,7 +144,7 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   const std::string resolved = ResolvedToml(scenario);
   ClaimResultFolder(options.out_folder, resolved, options.force);
 
-  const RoundPhysics physics = PhysicsOf(scenario, asked.part);
+  const RoundPhysics physics = ScenarioPhysics(scenario, asked.part);
   const Pile pile = StartPile(scenario, asked, physics);
   if (archive_pile) SavePile(asked, (out / "given.pile.json").string());
   SavePile(pile, (out / "start.pile.json").string());
@@ -158,10 +152,7 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   TwinCellOptions cell_options;
   cell_options.physics = physics;
   cell_options.seed = static_cast<std::uint64_t>(scenario.seed);
-  if (scenario.scan.resolution == "2064x1544") {
-    cell_options.scan.width = cell_options.scan.spec.full_width;
-    cell_options.scan.height = cell_options.scan.spec.full_height;
-  }
+  cell_options.scan = ScenarioScan(scenario, physics);
   cell_options.parallelism = options.parallelism;
   TwinCell twin(pile, cell_options);
   WriteFileAtomically((out / "cell.xml").string(), twin.ModelXml());

@@ -25,6 +25,13 @@ void Scenario::CellChoice::Device::Visit(ConfigVisitor& v) {
   v.Choice("driver", "which device serves this role", driver, {"twin"});
 }
 
+void Scenario::CellChoice::ScannerDevice::Visit(ConfigVisitor& v) {
+  Device::Visit(v);
+  v.Field("hand_eye_error", "error of the scanner's pose against what [physics] draws; 0: none",
+          hand_eye_error, {0, 100});
+  effects.Visit(v);
+}
+
 void Scenario::CellChoice::Visit(ConfigVisitor& v) {
   v.Section("arm", "the arm", arm);
   v.Section("gripper", "the gripper", gripper);
@@ -45,6 +52,27 @@ void Scenario::Visit(ConfigVisitor& v) {
   v.Section("resolution", "when several tubes hang in the fingers", resolution);
   v.Section("cycle", "speeds, forces and waits of the pick cycle", cycle);
   v.Section("cell", "which devices", cell);
+}
+
+RoundPhysics ScenarioPhysics(const Scenario& scenario, const Part& part) {
+  if (!scenario.physics.randomize) return NominalPhysics(part);
+  PhysicsRanges ranges = scenario.physics;
+  ranges.hand_eye_error_m *= scenario.cell.scanner.hand_eye_error;
+  ranges.hand_eye_error_deg *= scenario.cell.scanner.hand_eye_error;
+  return DrawPhysics(ranges, part,
+                     RandomStream(static_cast<std::uint64_t>(scenario.seed), 0, "physics"));
+}
+
+ScanSettings ScenarioScan(const Scenario& scenario, const RoundPhysics& physics) {
+  ScanSettings settings;
+  if (scenario.scan.resolution == "2064x1544") {
+    settings.width = settings.spec.full_width;
+    settings.height = settings.spec.full_height;
+  }
+  settings.effects = scenario.cell.scanner.effects;
+  settings.noise_scale = physics.depth_noise_scale;
+  settings.bias_seed = static_cast<std::uint64_t>(scenario.seed);
+  return settings;
 }
 
 Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m) {
@@ -76,11 +104,7 @@ Pile ScenarioPile(const Scenario& scenario, const std::string& folder) {
   }
   const Part part = LoadPart(scenario.pile.part.empty() ? "pvc_a" : scenario.pile.part);
   const Bin bin = ScenarioBin(scenario, Bin().size_m);
-  const RoundPhysics physics =
-      scenario.physics.randomize
-          ? DrawPhysics(scenario.physics, part,
-                        RandomStream(static_cast<std::uint64_t>(scenario.seed), 0, "physics"))
-          : NominalPhysics(part);
+  const RoundPhysics physics = ScenarioPhysics(scenario, part);
   SettleResult made = GeneratePile(part, bin, scenario.pile.count, scenario.pile.arrangement,
                                    static_cast<std::uint64_t>(scenario.seed), physics);
   if (made.status != SettleStatus::kSettled) {

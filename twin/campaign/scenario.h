@@ -8,6 +8,7 @@
 #include "planner/evaluator/evaluator.h"
 #include "planner/pick_cycle.h"
 #include "scenes/pile.h"
+#include "twin/render/scan_geometry.h"
 
 namespace tubetwin {
 
@@ -44,12 +45,23 @@ struct Scenario {
     struct Device {
       std::string driver = "twin";
       void Visit(ConfigVisitor& v);
-    } arm, gripper, wrist, scanner;
+    } arm, gripper, wrist;
+    struct ScannerDevice : Device {
+      double hand_eye_error = 1.0;  ///< Of what [physics] draws; 0: none.
+      ScannerEffects effects;
+      void Visit(ConfigVisitor& v);
+    } scanner;
     void Visit(ConfigVisitor& v);
   } cell;
 
   void Visit(ConfigVisitor& v);
 };
+
+/// The physics of the scenario's round for a part: nominal, or drawn.
+RoundPhysics ScenarioPhysics(const Scenario& scenario, const Part& part);
+
+/// How the scenario's scanner sees, without labels, for a round with that physics.
+ScanSettings ScenarioScan(const Scenario& scenario, const RoundPhysics& physics);
 
 /// The bin of the scenario for a pile that says `pile_size_m`.
 Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m);

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "models/clearance.h"
+#include "models/scanner_spec.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/contact_bits.h"
 
@@ -135,7 +136,7 @@ mjsBody& AddArm(mjSpec& spec, const ArmModel& arm, const CellLayout& layout) {
       AddFixed(link6, "wrist_sensor", arm.X_6F * Translation(0, 0, 0.5 * sensor_height_m));
   SetInertial(sensor, kSensorMass_kg, Vector3::Zero(),
               BoxInertia(kSensorMass_kg, Vector3(0.075, 0.075, sensor_height_m)));
-  mjsBody& scanner = AddFixed(link6, "scanner", arm.X_6F * layout.X_FS);
+  mjsBody& scanner = AddFixed(link6, "scanner", arm.X_6F * layout.X_FS * HousingPose({}));
   SetInertial(scanner, kScannerMass_kg, Vector3(0, 0, kScannerCentre_m),
               BoxInertia(kScannerMass_kg, Vector3(0.30, 0.08, 0.07)));
   mjsBody& tool = AddFixed(link6, "tool", X_6K);

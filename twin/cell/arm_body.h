@@ -14,10 +14,10 @@ namespace tubetwin {
 std::string ArmJointName(int joint);
 
 // On the flange above the sensor's tool face, so not weighed: transducer with its plates (centre
-// half way to the tool face), scanner with bracket (centre along z of S).
+// half way to the tool face), scanner with bracket (centre in the housing's frame H).
 inline constexpr double kSensorMass_kg = 0.45;
 inline constexpr double kScannerMass_kg = 1.25;
-inline constexpr double kScannerCentre_m = -0.03;
+inline constexpr double kScannerCentre_m = -0.034;  ///< Along H's z: middle of the housing.
 
 /// Site at X_FK on the tool body, axes of K: where the wrist sensor measures.
 inline constexpr char kWristSite[] = "wrist";

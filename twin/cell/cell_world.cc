@@ -21,7 +21,6 @@ constexpr std::array<float, 4> kTrayRgba = {0.70f, 0.66f, 0.55f, 1.0f};
 constexpr double kPlateThickness_m = 0.02;
 /// At rest tubes creep far less than this (impratio 100); what still rolls is faster.
 constexpr double kSleepSpeed_m_s = 2e-4;
-constexpr float kCellAlbedo = 0.45f;
 
 /// A box of the scene. Friction is that of the tubes: the material pair is drawn as one number.
 void AddBox(mjSpec& spec, const std::string& name, const RigidTransform& X_BBox,
@@ -150,16 +149,12 @@ void CellWorld::Refresh() {
 
 void CellWorld::MapGeoms(const Pile& pile) {
   tube_of_geom_.assign(model_->ngeom, -1);
-  albedo_of_geom_.assign(model_->ngeom, kCellAlbedo);
   for (std::size_t tube = 0; tube < tubes_.size(); ++tube) {
     tubes_[tube].Bind(*model_);
     for (const int geom : tubes_[tube].geoms()) tube_of_geom_[geom] = static_cast<int>(tube);
   }
-  double tube_albedo = 0.0;
-  for (const double channel : pile.part.colour_rgb) tube_albedo += channel / 3.0;
-  for (int geom = 0; geom < model_->ngeom; ++geom) {
-    if (tube_of_geom_[geom] >= 0) albedo_of_geom_[geom] = static_cast<float>(tube_albedo);
-  }
+  tube_albedo_ = static_cast<float>(pile.part.albedo());
+  tube_gloss_ = static_cast<float>(pile.part.gloss);
 }
 
 void CellWorld::Step() {
@@ -178,10 +173,7 @@ void CellWorld::Step() {
 
 ScanGeometry CellWorld::Geometry() const {
   ScanGeometry geometry;
-  // The scanner looks out of its own housing.
-  const int own_housing = mj_name2id(model_.get(), mjOBJ_GEOM, "arm_scanner");
   for (int geom = 0; geom < model_->ngeom; ++geom) {
-    if (geom == own_housing) continue;
     const mjtNum* R = data_->geom_xmat + 9 * geom;
     const mjtNum* size = model_->geom_size + 3 * geom;
     const Vector3 centre(data_->geom_xpos + 3 * geom);
@@ -189,10 +181,11 @@ ScanGeometry CellWorld::Geometry() const {
     const int tube = tube_of_geom_[geom];
     const std::uint32_t label =
         tube >= 0 ? kLabelFirstTube + static_cast<std::uint32_t>(tube) : kLabelCell;
-    const float albedo = albedo_of_geom_[geom];
+    const float albedo = tube >= 0 ? tube_albedo_ : kCellAlbedo;
+    const float gloss = tube >= 0 ? tube_gloss_ : 0.0f;
     const auto capsule = [&](double half_m) {
       geometry.capsules.push_back(
-          {centre - half_m * axis, centre + half_m * axis, size[0], label, albedo});
+          {centre - half_m * axis, centre + half_m * axis, size[0], label, albedo, gloss});
     };
     switch (model_->geom_type[geom]) {
       case mjGEOM_CAPSULE:
@@ -208,8 +201,8 @@ ScanGeometry CellWorld::Geometry() const {
       case mjGEOM_BOX: {
         Matrix3 R_BBox;
         R_BBox << R[0], R[1], R[2], R[3], R[4], R[5], R[6], R[7], R[8];
-        geometry.boxes.push_back(
-            {MakeTransform(R_BBox, centre), Vector3(size[0], size[1], size[2]), label, albedo});
+        geometry.boxes.push_back({MakeTransform(R_BBox, centre), Vector3(size[0], size[1], size[2]),
+                                  label, albedo, gloss});
         break;
       }
       default:

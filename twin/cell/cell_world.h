@@ -61,7 +61,7 @@ class CellWorld {
   std::optional<PadContacts> pad_contacts_;
   std::vector<TubeBody> tubes_;
   std::vector<int> tube_of_geom_;
-  std::vector<float> albedo_of_geom_;
+  float tube_albedo_ = 0, tube_gloss_ = 0;
 };
 
 /// Arm position at the start: E over the middle of the bin at carry height, tool vertical. Throws

@@ -17,7 +17,7 @@ struct TwinCellOptions {
   RoundPhysics physics;
   std::uint64_t seed = 1;  ///< Of noise streams.
   std::uint64_t round = 0;
-  ScanSettings scan;
+  ScanSettings scan;        ///< Complete: its noise scale is the round's.
   Parallelism parallelism;  ///< For ray casting only.
 };
 

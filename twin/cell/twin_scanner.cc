@@ -8,9 +8,7 @@ namespace tubetwin {
 
 TwinScanner::TwinScanner(const ArmModel& arm_model, const CellWorld& world, const TwinArm& arm,
                          Setup setup, RandomStream stream)
-    : arm_model_(arm_model), world_(world), arm_(arm), setup_(std::move(setup)), stream_(stream) {
-  setup_.settings.noise_scale *= setup_.physics.depth_noise_scale;
-}
+    : arm_model_(arm_model), world_(world), arm_(arm), setup_(std::move(setup)), stream_(stream) {}
 
 RigidTransform TwinScanner::TrueX_BS() const {
   return FlangePose(arm_model_, arm_.TruePosition()) * setup_.layout.X_FS *

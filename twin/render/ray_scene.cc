@@ -7,21 +7,22 @@
 #include <embree3/rtcore.h>
 
 #include "hw_bridge/base/error.h"
+#include "twin/render/ray_capsules.h"
 
 namespace tubetwin {
 namespace {
 
-// Rays are cast in packets of 4 x 2 pixels: neighbours stay together.
-constexpr int kPacket = 8;
-constexpr int kPacketColumns = 4;
-constexpr int kPacketRows = 2;
+constexpr int kSide = HitImage::kPacketSide;
+constexpr int kPacket = kSide * kSide;  // As many as Embree takes at once.
 
 // A shadow ray starts this far off the surface: over Embree's float error (below 1 um at these
 // distances), far below what a scanner resolves.
 constexpr float kShadowOffset_m = 10e-6f;
 
-constexpr double kProjectorHalfWidth_deg = 47.5 / 2;
-constexpr double kProjectorHalfHeight_deg = 36.0 / 2;
+// Camera and projector look out of the housing's front face: rays start this far before it.
+constexpr float kWindow_m = 0.002f;
+constexpr float kFarthest_m = 10.0f;
+constexpr float kUnshadowed = 0.001f;  // Least cosine of the light when nothing shades.
 
 struct DeviceDeleter {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -53,28 +54,22 @@ T* NewBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::si
   return static_cast<T*>(data);
 }
 
-void AddCapsules(RTCDevice device, RTCScene scene, const ScanGeometry& geometry,
-                 const RigidTransform& X_SB) {
-  const std::size_t n = geometry.capsules.size();
-  if (n == 0) return;
-  const GeometryPtr curves(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE));
-  RequireNoError(device, "making curves");
-  float* vertex = NewBuffer<float>(curves.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
-                                   4 * sizeof(float), 2 * n);
-  unsigned* index = NewBuffer<unsigned>(curves.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT,
-                                        sizeof(unsigned), n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const ScanGeometry::Capsule& capsule = geometry.capsules[i];
-    for (const Vector3& p_B : {capsule.a, capsule.b}) {
-      const Eigen::Vector3f p_S = (X_SB * p_B).cast<float>();
-      std::copy_n(p_S.data(), 3, vertex);
-      vertex[3] = static_cast<float>(capsule.radius_m);
-      vertex += 4;
-    }
-    index[i] = static_cast<unsigned>(2 * i);
+std::vector<RayCapsule> CapsulesInS(const ScanGeometry& geometry, const RigidTransform& X_SB) {
+  std::vector<RayCapsule> out;
+  out.reserve(geometry.capsules.size());
+  for (const ScanGeometry::Capsule& capsule : geometry.capsules) {
+    out.push_back({(X_SB * capsule.a).cast<float>(), (X_SB * capsule.b).cast<float>(),
+                   static_cast<float>(capsule.radius_m)});
   }
-  rtcCommitGeometry(curves.get());
-  rtcAttachGeometryByID(scene, curves.get(), 0);
+  return out;
+}
+
+void AddCapsules(RTCDevice device, RTCScene scene, const std::vector<RayCapsule>& capsules) {
+  if (capsules.empty()) return;
+  const GeometryPtr geometry(NewCapsuleGeometry(device, capsules));
+  RequireNoError(device, "making capsules");
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometryByID(scene, geometry.get(), 0);
 }
 
 void AddBoxes(RTCDevice device, RTCScene scene, const ScanGeometry& geometry,
@@ -110,17 +105,29 @@ void AddBoxes(RTCDevice device, RTCScene scene, const ScanGeometry& geometry,
 
 }  // namespace
 
+HitImage::HitImage(const Pinhole& pinhole) {
+  const auto padded = [](int n) { return (n + kSide - 1) / kSide * kSide; };
+  stride = padded(pinhole.width);
+  const std::size_t n = static_cast<std::size_t>(stride) * padded(pinhole.height);
+  z_m = std::make_unique_for_overwrite<float[]>(n);
+  cos_camera = std::make_unique_for_overwrite<float[]>(n);
+  cos_projector = std::make_unique_for_overwrite<float[]>(n);
+  cos_mirror = std::make_unique_for_overwrite<float[]>(n);
+  shape = std::make_unique_for_overwrite<int[]>(n);
+}
+
 struct RayScene::Impl {
   DevicePtr device;
+  std::vector<RayCapsule> capsules;  ///< The scene's geometry refers to them.
   ScenePtr scene;
-  int capsules = 0;
   Eigen::Vector3f p_SP = Eigen::Vector3f::Zero();  ///< Projector.
   Eigen::Matrix3f R_PS = Eigen::Matrix3f::Identity();
   float tan_half_width = 0, tan_half_height = 0;
 
-  void CastPacket(const Pinhole& pinhole, int row0, int column0, int last_row,
-                  std::vector<RayHit>& hits) const;
-  void CastShadows(const RTCRayHit8& seen, int* valid, RayHit* out) const;
+  void CastPacket(const Pinhole& pinhole, int row0, int column0, bool shadows,
+                  HitImage& hits) const;
+  void Light(const RTCRayHit16& seen, RTCRay16& light, int* valid, float* cos_camera,
+             float* cos_projector, float* cos_mirror) const;
 };
 
 RayScene::RayScene(const ScanGeometry& geometry, const RigidTransform& X_BS,
@@ -133,117 +140,121 @@ RayScene::RayScene(const ScanGeometry& geometry, const RigidTransform& X_BS,
   rtcSetSceneFlags(impl.scene.get(), RTC_SCENE_FLAG_ROBUST);
   // All in S: floats are finest near the camera.
   const RigidTransform X_SB = X_BS.inverse();
-  AddCapsules(impl.device.get(), impl.scene.get(), geometry, X_SB);
+  impl.capsules = CapsulesInS(geometry, X_SB);
+  AddCapsules(impl.device.get(), impl.scene.get(), impl.capsules);
   AddBoxes(impl.device.get(), impl.scene.get(), geometry, X_SB);
   rtcCommitScene(impl.scene.get());
   RequireNoError(impl.device.get(), "building the scene");
-  impl.capsules = static_cast<int>(geometry.capsules.size());
   const RigidTransform X_SP = ProjectorPose(spec);
   impl.p_SP = X_SP.translation().cast<float>();
   impl.R_PS = X_SP.linear().transpose().cast<float>();
-  impl.tan_half_width = static_cast<float>(std::tan(Radians(kProjectorHalfWidth_deg)));
-  impl.tan_half_height = static_cast<float>(std::tan(Radians(kProjectorHalfHeight_deg)));
+  impl.tan_half_width = static_cast<float>(std::tan(Radians(0.5 * spec.projector_width_deg)));
+  impl.tan_half_height = static_cast<float>(std::tan(Radians(0.5 * spec.projector_height_deg)));
 }
 
 RayScene::~RayScene() = default;
 
-void RayScene::CastRows(const Pinhole& pinhole, int first, int last,
-                        std::vector<RayHit>& hits) const {
-  TT_CHECK(hits.size() == static_cast<std::size_t>(pinhole.width) * pinhole.height);
-  for (int row = first; row < last; row += kPacketRows) {
-    for (int column = 0; column < pinhole.width; column += kPacketColumns) {
-      impl_->CastPacket(pinhole, row, column, last, hits);
+void RayScene::CastRows(const Pinhole& pinhole, int first, int last, bool shadows,
+                        HitImage& hits) const {
+  TT_CHECK(first % kSide == 0);
+  for (int row = first; row < last; row += kSide) {
+    for (int column = 0; column < pinhole.width; column += kSide) {
+      impl_->CastPacket(pinhole, row, column, shadows, hits);
     }
   }
 }
 
-void RayScene::Impl::CastPacket(const Pinhole& pinhole, int row0, int column0, int last_row,
-                                std::vector<RayHit>& hits) const {
-  alignas(32) RTCRayHit8 packet;
-  alignas(32) int valid[kPacket];
+void RayScene::Impl::CastPacket(const Pinhole& pinhole, int row0, int column0, bool shadows,
+                                HitImage& hits) const {
+  alignas(64) RTCRayHit16 packet;
+  alignas(64) int valid[kPacket];
   for (int i = 0; i < kPacket; ++i) {
-    const int row = row0 + i / kPacketColumns, column = column0 + i % kPacketColumns;
-    valid[i] = row < last_row && column < pinhole.width ? -1 : 0;
+    valid[i] = -1;
     packet.ray.org_x[i] = packet.ray.org_y[i] = packet.ray.org_z[i] = 0.0f;
-    packet.ray.dir_x[i] = pinhole.x(column);
-    packet.ray.dir_y[i] = pinhole.y(row);
+    packet.ray.dir_x[i] = pinhole.x(column0 + i % kSide);
+    packet.ray.dir_y[i] = pinhole.y(row0 + i / kSide);
     packet.ray.dir_z[i] = 1.0f;  // So that the ray's parameter is the depth.
-    packet.ray.tnear[i] = 0.0f;
-    packet.ray.tfar[i] = 10.0f;
+    packet.ray.tnear[i] = kWindow_m;
+    packet.ray.tfar[i] = kFarthest_m;
     packet.ray.time[i] = 0.0f;
     packet.ray.mask[i] = 0xffffffffu;
     packet.ray.id[i] = static_cast<unsigned>(i);
     packet.ray.flags[i] = 0;
-    packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.Ng_x[i] = packet.hit.Ng_y[i] = packet.hit.Ng_z[i] = 0.0f;
+    packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
   }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect8(valid, scene.get(), &context, &packet);
+  rtcIntersect16(valid, scene.get(), &context, &packet);
 
-  RayHit out[kPacket];
-  for (int i = 0; i < kPacket; ++i) {
-    if (valid[i] == 0 || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-    const int primitive = static_cast<int>(packet.hit.primID[i]);
-    out[i].shape = packet.hit.geomID[i] == 0 ? primitive : capsules + primitive / 12;
-    out[i].z_m = packet.ray.tfar[i];
+  alignas(64) float cos_camera[kPacket], cos_projector[kPacket], cos_mirror[kPacket];
+  alignas(64) RTCRay16 light;
+  Light(packet, light, valid, cos_camera, cos_projector, cos_mirror);
+  if (shadows) {
+    bool any = false;
+    for (int i = 0; i < kPacket; ++i) any |= valid[i] != 0;
+    if (any) rtcOccluded16(valid, scene.get(), &context, &light);
   }
-  alignas(32) int has_hit[kPacket];
-  for (int i = 0; i < kPacket; ++i) has_hit[i] = out[i].shape >= 0 ? -1 : 0;
-  CastShadows(packet, has_hit, out);
+  alignas(64) float z_m[kPacket];
+  alignas(64) int shape[kPacket];
+  const int boxes_from = static_cast<int>(capsules.size());
   for (int i = 0; i < kPacket; ++i) {
-    if (valid[i] == 0) continue;
-    const int row = row0 + i / kPacketColumns, column = column0 + i % kPacketColumns;
-    hits[static_cast<std::size_t>(row) * pinhole.width + column] = out[i];
+    const bool hit = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+    const int primitive = static_cast<int>(packet.hit.primID[i]);
+    shape[i] = !hit ? -1 : packet.hit.geomID[i] == 0 ? primitive : boxes_from + primitive / 12;
+    z_m[i] = hit ? packet.ray.tfar[i] : 0.0f;
+    const bool lit = valid[i] != 0 && light.tfar[i] >= 0.0f;
+    if (!hit || (shadows && !lit)) cos_projector[i] = 0.0f;
+    if (hit && !shadows) cos_projector[i] = std::max(cos_projector[i], kUnshadowed);
+  }
+  for (int r = 0; r < kSide; ++r) {
+    const std::size_t at = hits.Index(row0 + r, column0);
+    std::copy_n(z_m + kSide * r, kSide, &hits.z_m[at]);
+    std::copy_n(cos_camera + kSide * r, kSide, &hits.cos_camera[at]);
+    std::copy_n(cos_projector + kSide * r, kSide, &hits.cos_projector[at]);
+    std::copy_n(cos_mirror + kSide * r, kSide, &hits.cos_mirror[at]);
+    std::copy_n(shape + kSide * r, kSide, &hits.shape[at]);
   }
 }
 
-void RayScene::Impl::CastShadows(const RTCRayHit8& seen, int* valid, RayHit* out) const {
-  alignas(32) RTCRay8 rays;
-  bool any = false;
+/// Incidences of what was seen, and the rays from there to the projector: `valid` where light could
+/// come. Without branches: the compiler makes vector instructions of it.
+void RayScene::Impl::Light(const RTCRayHit16& seen, RTCRay16& light, int* valid, float* cos_camera,
+                           float* cos_projector, float* cos_mirror) const {
   for (int i = 0; i < kPacket; ++i) {
-    rays.org_x[i] = rays.org_y[i] = rays.org_z[i] = 0.0f;
-    rays.dir_x[i] = rays.dir_y[i] = 0.0f;
-    rays.dir_z[i] = 1.0f;
-    rays.tnear[i] = 0.0f;
-    rays.tfar[i] = 1.0f;
-    rays.time[i] = 0.0f;
-    rays.mask[i] = 0xffffffffu;
-    rays.id[i] = static_cast<unsigned>(i);
-    rays.flags[i] = 0;
-    if (valid[i] == 0) continue;
-    const Eigen::Vector3f ray(seen.ray.dir_x[i], seen.ray.dir_y[i], 1.0f);
-    const Eigen::Vector3f p = ray * out[i].z_m;
-    Eigen::Vector3f normal(seen.hit.Ng_x[i], seen.hit.Ng_y[i], seen.hit.Ng_z[i]);
-    normal.normalize();
-    if (normal.dot(ray) > 0) normal = -normal;  // Triangles have two sides.
-    out[i].cos_camera = -normal.dot(ray) / ray.norm();
-    const Eigen::Vector3f to_projector = p_SP - p;
-    const Eigen::Vector3f p_P = R_PS * -to_projector;
-    const float cos_projector = normal.dot(to_projector) / to_projector.norm();
-    if (cos_projector <= 0 || p_P.z() <= 0 || std::abs(p_P.x()) > tan_half_width * p_P.z() ||
-        std::abs(p_P.y()) > tan_half_height * p_P.z()) {
-      valid[i] = 0;
-      continue;
-    }
-    out[i].cos_projector = cos_projector;
-    const Eigen::Vector3f start = p + normal * kShadowOffset_m;
-    rays.org_x[i] = start.x();
-    rays.org_y[i] = start.y();
-    rays.org_z[i] = start.z();
-    rays.dir_x[i] = to_projector.x();
-    rays.dir_y[i] = to_projector.y();
-    rays.dir_z[i] = to_projector.z();
-    any = true;
-  }
-  if (!any) return;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded8(valid, scene.get(), &context, &rays);
-  for (int i = 0; i < kPacket; ++i) {
-    if (valid[i] != 0 && rays.tfar[i] < 0) out[i].cos_projector = 0;
+    const float z = seen.ray.tfar[i], rx = seen.ray.dir_x[i], ry = seen.ray.dir_y[i];
+    const float x = rx * z, y = ry * z;
+    const float per_ray = 1.0f / std::sqrt(rx * rx + ry * ry + 1.0f);
+    float nx = seen.hit.Ng_x[i], ny = seen.hit.Ng_y[i], nz = seen.hit.Ng_z[i];
+    const float towards = nx * rx + ny * ry + nz;
+    // Triangles have two sides; the camera sees the one that looks at it.
+    const float scale =
+        (towards > 0.0f ? -1.0f : 1.0f) / std::sqrt(std::max(nx * nx + ny * ny + nz * nz, 1e-30f));
+    nx *= scale, ny *= scale, nz *= scale;
+    const float lx = p_SP.x() - x, ly = p_SP.y() - y, lz = p_SP.z() - z;
+    const float per_light = 1.0f / std::sqrt(lx * lx + ly * ly + lz * lz);
+    cos_camera[i] = -(nx * rx + ny * ry + nz) * per_ray;
+    cos_projector[i] = (nx * lx + ny * ly + nz * lz) * per_light;
+    const float hx = lx * per_light - rx * per_ray, hy = ly * per_light - ry * per_ray;
+    const float hz = lz * per_light - per_ray;
+    cos_mirror[i] = (nx * hx + ny * hy + nz * hz) / std::sqrt(hx * hx + hy * hy + hz * hz);
+    const float px = -(R_PS(0, 0) * lx + R_PS(0, 1) * ly + R_PS(0, 2) * lz);
+    const float py = -(R_PS(1, 0) * lx + R_PS(1, 1) * ly + R_PS(1, 2) * lz);
+    const float pz = -(R_PS(2, 0) * lx + R_PS(2, 1) * ly + R_PS(2, 2) * lz);
+    const bool in_frustum = (pz > 0.0f) & (std::abs(px) <= tan_half_width * pz) &
+                            (std::abs(py) <= tan_half_height * pz);
+    valid[i] = in_frustum & (cos_projector[i] > 0.0f) & (z < kFarthest_m) ? -1 : 0;
+    light.org_x[i] = x + nx * kShadowOffset_m;
+    light.org_y[i] = y + ny * kShadowOffset_m;
+    light.org_z[i] = z + nz * kShadowOffset_m;
+    light.dir_x[i] = lx, light.dir_y[i] = ly, light.dir_z[i] = lz;
+    light.tnear[i] = 0.0f;
+    light.tfar[i] = 1.0f - kWindow_m * per_light;
+    light.time[i] = 0.0f;
+    light.mask[i] = 0xffffffffu;
+    light.id[i] = static_cast<unsigned>(i);
+    light.flags[i] = 0;
   }
 }
 

@@ -8,15 +8,6 @@
 
 namespace tubetwin {
 
-/// What one camera ray met. Frame S.
-struct RayHit {
-  float z_m = 0;            ///< Depth along S's z; 0: nothing was hit.
-  float cos_camera = 0;     ///< Of the angle between surface normal and camera ray, 0..1.
-  float cos_projector = 0;  ///< Same for the projector's ray; 0 or less: the projector's light does
-                            ///< not get there (shadow, back side, outside of its frustum).
-  int shape = -1;           ///< Capsules first, then boxes, in the geometry's order.
-};
-
 /// Pinhole of a scan: square pixels, principal point at the centre.
 struct Pinhole {
   int width = 0, height = 0;
@@ -24,6 +15,32 @@ struct Pinhole {
   /// Point at depth 1 on the ray through the centre of a pixel.
   float x(int column) const { return (column + 0.5f - 0.5f * width) / focal_px; }
   float y(int row) const { return (row + 0.5f - 0.5f * height) / focal_px; }
+};
+
+/// What the camera's rays met, one plane per figure. Rows of `stride` values; rows and columns are
+/// padded to whole ray packets, and the padding holds rays just outside the image.
+struct HitImage {
+  static constexpr int kPacketSide = 4;  ///< Rays are cast in squares of this many pixels.
+
+  explicit HitImage(const Pinhole& pinhole);
+
+  int stride = 0;
+  /// Depth along z of S; 0: nothing was hit.
+  std::unique_ptr<float[]> z_m;
+  /// Cosine of the angle between surface normal and camera ray, 0..1.
+  std::unique_ptr<float[]> cos_camera;
+  /// Same for the projector's ray; 0: the projector's light does not get there (shadow, back side,
+  /// outside of its frustum).
+  std::unique_ptr<float[]> cos_projector;
+  /// Cosine between the normal and the direction half way between camera and projector: 1 where the
+  /// surface mirrors one into the other.
+  std::unique_ptr<float[]> cos_mirror;
+  /// Capsules first, then boxes, in the geometry's order; -1: nothing.
+  std::unique_ptr<int[]> shape;
+
+  std::size_t Index(int row, int column) const {
+    return static_cast<std::size_t>(row) * stride + column;
+  }
 };
 
 /// Embree scene of one geometry seen from one scanner pose; the only place that knows Embree.
@@ -34,8 +51,9 @@ class RayScene {
   RayScene(const ScanGeometry& geometry, const RigidTransform& X_BS, const ScannerSpec& spec);
   ~RayScene();
 
-  /// Casts camera and projector rays for rows [first, last); `hits` is the whole image.
-  void CastRows(const Pinhole& pinhole, int first, int last, std::vector<RayHit>& hits) const;
+  /// Casts camera and projector rays for rows [first, last); `first` is a multiple of kPacketSide.
+  /// Without `shadows` the light gets everywhere, at a cosine of at least 0.001.
+  void CastRows(const Pinhole& pinhole, int first, int last, bool shadows, HitImage& hits) const;
 
  private:
   struct Impl;
