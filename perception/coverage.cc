@@ -6,7 +6,7 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kFloorCell_m = 0.005;
+constexpr double kFloorCell_m = 0.010;
 constexpr double kRoomCell_m = 0.010;
 /// A place is seen when the return behind it is at most this much nearer than the place.
 constexpr float kTolerance_m = 0.004f;
@@ -26,25 +26,31 @@ bool SeenByAny(const std::vector<ViewImage>& views, const Vector3& p_N) {
                      [&p_N](const ViewImage& view) { return SeenBy(view, p_N); });
 }
 
-/// Cells of a layer at height `z` that no view saw; `inset` keeps the centres off the walls.
-int UnseenCells(const std::vector<ViewImage>& views, const Bin& bin, double cell_m, double z) {
-  const int nx = std::max(1, static_cast<int>(std::lround(bin.size_m[0] / cell_m)));
-  const int ny = std::max(1, static_cast<int>(std::lround(bin.size_m[1] / cell_m)));
-  int unseen = 0;
-  for (int j = 0; j < ny; ++j) {
-    for (int i = 0; i < nx; ++i) {
-      const Vector3 p_N((i + 0.5) / nx * bin.size_m[0] - bin.half_x_m(),
-                        (j + 0.5) / ny * bin.size_m[1] - bin.half_y_m(), z);
-      unseen += !SeenByAny(views, p_N);
-    }
-  }
-  return unseen;
+int CellsAlong(double size_m, double cell_m) {
+  return std::max(1, static_cast<int>(std::lround(size_m / cell_m)));
 }
 
-double CellArea(const Bin& bin, double cell_m) {
-  const double nx = std::max(1L, std::lround(bin.size_m[0] / cell_m));
-  const double ny = std::max(1L, std::lround(bin.size_m[1] / cell_m));
-  return bin.size_m[0] * bin.size_m[1] / (nx * ny);
+/// Cells of a layer at height `z` that no view saw.
+UnseenFloor UnseenCells(const std::vector<ViewImage>& views, const Bin& bin, double cell_m,
+                        double z) {
+  UnseenFloor out;
+  out.columns = CellsAlong(bin.size_m[0], cell_m);
+  out.rows = CellsAlong(bin.size_m[1], cell_m);
+  out.cell_x_m = bin.size_m[0] / out.columns;
+  out.cell_y_m = bin.size_m[1] / out.rows;
+  for (int j = 0; j < out.rows; ++j) {
+    for (int i = 0; i < out.columns; ++i) {
+      const Vector3 p_N((i + 0.5) * out.cell_x_m - bin.half_x_m(),
+                        (j + 0.5) * out.cell_y_m - bin.half_y_m(), z);
+      out.unseen.push_back(SeenByAny(views, p_N) ? 0 : 1);
+    }
+  }
+  return out;
+}
+
+double Area(const UnseenFloor& layer) {
+  return static_cast<double>(std::count(layer.unseen.begin(), layer.unseen.end(), 1)) *
+         layer.cell_x_m * layer.cell_y_m;
 }
 
 }  // namespace
@@ -52,17 +58,18 @@ double CellArea(const Bin& bin, double cell_m) {
 Coverage MeasureCoverage(const std::vector<ViewImage>& views, const Bin& bin,
                          Parallelism parallelism) {
   const int layers = std::max(1, static_cast<int>(std::lround(bin.wall_m() / kRoomCell_m)));
-  std::vector<int> unseen(static_cast<std::size_t>(layers) + 1, 0);
-  ParallelFor(layers + 1, parallelism, [&](int k, int) {
-    const auto i = static_cast<std::size_t>(k);
-    unseen[i] = k == 0 ? UnseenCells(views, bin, kFloorCell_m, 0.0)
-                       : UnseenCells(views, bin, kRoomCell_m, (k - 0.5) / layers * bin.wall_m());
-  });
   Coverage out;
-  out.unseen_floor_m2 = unseen[0] * CellArea(bin, kFloorCell_m);
-  for (std::size_t k = 1; k < unseen.size(); ++k) {
-    out.unseen_m3 += unseen[k] * CellArea(bin, kRoomCell_m) * bin.wall_m() / layers;
-  }
+  std::vector<double> area_m2(static_cast<std::size_t>(layers) + 1, 0.0);
+  ParallelFor(layers + 1, parallelism, [&](int k, int) {
+    if (k == 0) {
+      out.unseen_floor = UnseenCells(views, bin, kFloorCell_m, 0.0);
+    } else {
+      area_m2[static_cast<std::size_t>(k)] =
+          Area(UnseenCells(views, bin, kRoomCell_m, (k - 0.5) / layers * bin.wall_m()));
+    }
+  });
+  out.unseen_floor_m2 = Area(out.unseen_floor);
+  for (const double a : area_m2) out.unseen_m3 += a * bin.wall_m() / layers;
   return out;
 }
 

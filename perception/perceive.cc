@@ -4,6 +4,7 @@
 #include "perception/assemble.h"
 #include "perception/axis_points.h"
 #include "perception/axis_space.h"
+#include "perception/bin_state.h"
 #include "perception/bridges.h"
 #include "perception/coverage.h"
 #include "perception/fragments.h"
@@ -127,7 +128,9 @@ TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, c
   points_N.reserve(surface.points.size() + surface.rejected_N.size());
   for (const SurfacePoint& p : surface.points) points_N.push_back(p.p_N);
   points_N.insert(points_N.end(), surface.rejected_N.begin(), surface.rejected_N.end());
-  scene.unexplained_points = CountUnexplained(points_N, scene.tubes, part.radius_m);
+  scene.unseen_floor = coverage.unseen_floor;
+  scene.unexplained_N = FindUnexplained(points_N, scene.tubes, part.radius_m);
+  JudgeBinContent(scene, surface.views, part, bin);
   AddWarnings(surface, fragments, part.radius_m, parallelism, scene);
   scene.timing_ms.crossings = timer.Lap();
   TubeScene::Timing& t = scene.timing_ms;

@@ -20,7 +20,64 @@ const char* ToString(TubeClass c) {
   return "";
 }
 
+const char* ToString(BinContent content) {
+  switch (content) {
+    case BinContent::kEmpty:
+      return "empty";
+    case BinContent::kNotEmpty:
+      return "not_empty";
+    case BinContent::kUnseen:
+      return "unseen";
+  }
+  TT_CHECK(!"a content outside the enumeration");
+  return "";
+}
+
 namespace {
+
+BinContent ContentFromJson(const JsonView& view) {
+  const std::string text = view.AsString();
+  for (const BinContent c : {BinContent::kEmpty, BinContent::kNotEmpty, BinContent::kUnseen}) {
+    if (text == ToString(c)) return c;
+  }
+  view.Fail("is '" + text + "', allowed are empty, not_empty, unseen");
+}
+
+/// Rows of characters, '#' unseen and '.' seen: small, and a person can look at it.
+Json FloorToJson(const UnseenFloor& floor) {
+  Json rows = Json::array();
+  for (int j = 0; j < floor.rows; ++j) {
+    std::string row;
+    for (int i = 0; i < floor.columns; ++i) {
+      row += floor.unseen[static_cast<std::size_t>(j) * floor.columns + i] != 0 ? '#' : '.';
+    }
+    rows.push_back(row);
+  }
+  return Json{{"first_corner_m",
+               {-0.5 * floor.columns * floor.cell_x_m, -0.5 * floor.rows * floor.cell_y_m}},
+              {"cell_m", {floor.cell_x_m, floor.cell_y_m}},
+              {"rows", rows}};
+}
+
+UnseenFloor FloorFromJson(const JsonView& view) {
+  UnseenFloor floor;
+  const std::vector<double> cell_m = view.Field("cell_m").AsNumbers();
+  if (cell_m.size() != 2) view.Field("cell_m").Fail("two numbers are needed");
+  floor.cell_x_m = cell_m[0];
+  floor.cell_y_m = cell_m[1];
+  const JsonView rows = view.Field("rows");
+  floor.rows = static_cast<int>(rows.Size());
+  for (std::size_t j = 0; j < rows.Size(); ++j) {
+    const std::string row = rows.Item(j).AsString();
+    if (j == 0) floor.columns = static_cast<int>(row.size());
+    if (static_cast<int>(row.size()) != floor.columns ||
+        row.find_first_not_of("#.") != std::string::npos) {
+      rows.Item(j).Fail("rows of equally many '#' and '.' are needed");
+    }
+    for (const char c : row) floor.unseen.push_back(c == '#' ? 1 : 0);
+  }
+  return floor;
+}
 
 TubeClass ClassFromJson(const JsonView& view) {
   const std::string text = view.AsString();
@@ -139,12 +196,16 @@ Json ToJson(const TubeScene& scene) {
   for (const PerceivedTube& tube : scene.tubes) json["tubes"].push_back(TubeToJson(tube));
   json["crossings"] = Json::array();
   for (const Crossing& c : scene.crossings) json["crossings"].push_back(CrossingToJson(c));
+  json["bin_content"] = ToString(scene.bin_content);
+  json["bin_content_reason"] = scene.bin_content_reason;
   json["unseen_m3"] = scene.unseen_m3;
   json["unseen_floor_m2"] = scene.unseen_floor_m2;
-  json["unexplained_points"] = scene.unexplained_points;
   json["radius_estimate_m"] =
       scene.radius_estimate_m ? Json(*scene.radius_estimate_m) : Json(nullptr);
   json["warnings"] = scene.warnings;
+  json["unseen_floor"] = FloorToJson(scene.unseen_floor);
+  json["unexplained_points"] = scene.unexplained_N.size();
+  json["unexplained_m"] = ToJson(scene.unexplained_N);
   const TubeScene::Timing& t = scene.timing_ms;
   json["timing_ms"] =
       Json{{"load", t.load}, {"filter", t.filter},       {"segment", t.segment}, {"fit", t.fit},
@@ -169,8 +230,6 @@ TubeScene TubeSceneFromJson(const JsonView& document) {
   if (const auto floor = document.Optional("unseen_floor_m2")) {
     scene.unseen_floor_m2 = floor->AsNumber(0.0, 1e6);
   }
-  scene.unexplained_points =
-      static_cast<int>(document.Field("unexplained_points").AsNumber(0, 2e9));
   if (const auto radius = document.Optional("radius_estimate_m")) {
     scene.radius_estimate_m = radius->AsNumber(0.0, 1.0);
   }
@@ -178,6 +237,18 @@ TubeScene TubeSceneFromJson(const JsonView& document) {
     for (std::size_t i = 0; i < warnings->Size(); ++i) {
       scene.warnings.push_back(warnings->Item(i).AsString());
     }
+  }
+  if (const auto floor = document.Optional("unseen_floor")) {
+    scene.unseen_floor = FloorFromJson(*floor);
+  }
+  document.Field("unexplained_points").AsNumber(0, 2e9);
+  if (const auto points = document.Optional("unexplained_m")) {
+    scene.unexplained_N = points->AsPolyline();
+  }
+  scene.bin_content = scene.tubes.empty() ? BinContent::kUnseen : BinContent::kNotEmpty;
+  if (const auto content = document.Optional("bin_content")) {
+    scene.bin_content = ContentFromJson(*content);
+    scene.bin_content_reason = document.Field("bin_content_reason").AsString();
   }
   const JsonView timing = document.Field("timing_ms");
   TubeScene::Timing& t = scene.timing_ms;

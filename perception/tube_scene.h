@@ -41,13 +41,31 @@ struct Crossing {
   bool visible = true;
 };
 
+/// Whether the bin holds anything, as far as the views can say. Unseen: nothing is seen, but a tube
+/// may lie where no view looked.
+enum class BinContent { kEmpty, kNotEmpty, kUnseen };
+const char* ToString(BinContent content);
+
+/// Which part of the bin's floor no view covered: equal cells, row by row along x of N from the
+/// corner (-half long, -half short) on.
+struct UnseenFloor {
+  int columns = 0, rows = 0;
+  double cell_x_m = 0.0, cell_y_m = 0.0;
+  std::vector<char> unseen;  ///< [rows * columns] 1 where no view saw the floor.
+};
+
 /// All that perception says about one look into the bin.
 struct TubeScene {
   std::vector<PerceivedTube> tubes;
   std::vector<Crossing> crossings;
   double unseen_m3 = 0.0;  ///< Volume over the floor that no view saw into.
   double unseen_floor_m2 = 0.0;
-  int unexplained_points = 0;  ///< Points above the floor that belong to no tube (thinned count).
+  UnseenFloor unseen_floor;
+  /// Points in the bin that belong to no tube: foreign objects, or what is left of a tube that
+  /// could not be modelled. One for each cell of 5 mm that holds some.
+  std::vector<Vector3> unexplained_N;
+  BinContent bin_content = BinContent::kUnseen;
+  std::string bin_content_reason;
   std::optional<double> radius_estimate_m;  ///< From the points alone; nothing when too few.
   std::vector<std::string> warnings;        ///< Sentences for the user, such as of a wrong part.
   struct Timing {

@@ -5,8 +5,8 @@
 
 namespace tubetwin {
 
-int CountUnexplained(const std::vector<Eigen::Vector3f>& points_N,
-                     const std::vector<PerceivedTube>& tubes, double radius_m) {
+std::vector<Vector3> FindUnexplained(const std::vector<Eigen::Vector3f>& points_N,
+                                     const std::vector<PerceivedTube>& tubes, double radius_m) {
   constexpr double kCell_m = 0.005;
   constexpr int kFewest = 6;
   const VoxelGrid grid(points_N, kCell_m,
@@ -19,13 +19,16 @@ int CountUnexplained(const std::vector<Eigen::Vector3f>& points_N,
   NearLines lines;
   for (const PerceivedTube& tube : tubes) lines.Add(tube.centerline_N);
   const double explained_m = radius_m + 0.004;
-  int unexplained = 0;
+  constexpr double kWritten_m = 1e-4;  // Digits that mean something.
+  std::vector<Vector3> unexplained_N;
   for (const Eigen::Vector4f& sum : sums) {
     if (sum[3] < kFewest) continue;
     const Vector3 p = sum.hnormalized().cast<double>();
-    unexplained += lines.Distance(p, 2.0 * explained_m) > explained_m;
+    if (lines.Distance(p, 2.0 * explained_m) > explained_m) {
+      unexplained_N.push_back((p / kWritten_m).array().round() * kWritten_m);
+    }
   }
-  return unexplained;
+  return unexplained_N;
 }
 
 }  // namespace tubetwin

@@ -6,9 +6,9 @@
 
 namespace tubetwin {
 
-/// Cells of 5 mm, with at least a few of `points_N` each, that lie on no tube. `points_N`: what is
-/// neither floor nor wall.
-int CountUnexplained(const std::vector<Eigen::Vector3f>& points_N,
-                     const std::vector<PerceivedTube>& tubes, double radius_m);
+/// One place for each cell of 5 mm, with at least a few of `points_N`, that lies on no tube, to a
+/// tenth of a millimetre. `points_N`: what is neither floor nor wall.
+std::vector<Vector3> FindUnexplained(const std::vector<Eigen::Vector3f>& points_N,
+                                     const std::vector<PerceivedTube>& tubes, double radius_m);
 
 }  // namespace tubetwin

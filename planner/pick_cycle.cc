@@ -58,6 +58,10 @@ class Round {
       looker_.MarkAll();
       scene = &looker_.Look();
     }
+    if (scene->tubes.empty() && scene->bin_content != BinContent::kEmpty) {
+      looker_.MarkAll();  // What is left of a tube may be enough in another scan.
+      scene = &looker_.Look();
+    }
     c_.report.tubes_in_bin = static_cast<int>(scene->tubes.size());
     expected_ = -1;
     if (first_count_ < 0) first_count_ = c_.report.tubes_in_bin;
@@ -295,7 +299,10 @@ std::optional<RoundReport> Attempt(Round& round) {
   CycleContext& c = round.context();
   round.BeginAttempt();
   const TubeScene& scene = round.LookSurely();
-  if (scene.tubes.empty()) return round.EndOfRound(RoundEnd::kEmpty, "no tube is seen");
+  if (scene.tubes.empty()) {
+    const bool empty = scene.bin_content == BinContent::kEmpty;
+    return round.EndOfRound(empty ? RoundEnd::kEmpty : RoundEnd::kNoPlan, scene.bin_content_reason);
+  }
   const std::optional<PickPlan> plan = round.Decide(scene);
   if (!plan) {
     if (!round.looker().all_fresh()) {

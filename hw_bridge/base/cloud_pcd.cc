@@ -39,7 +39,14 @@ struct PcdHeader {
   }
 };
 
-std::string Text(std::string_view word) { return "'" + std::string(word.substr(0, 40)) + "'"; }
+/// A word of the file as a message may show it.
+std::string Text(std::string_view word) {
+  std::string text(word.substr(0, 40));
+  for (char& c : text) {
+    if (c < 0x20 || c > 0x7e) c = '?';
+  }
+  return "'" + text + "'";
+}
 
 RigidTransform ParseViewpoint(const CloudFile& file, const std::vector<std::string_view>& words) {
   if (words.size() != 8) {

@@ -6,6 +6,7 @@
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/random.h"
 #include "perception/axis_points.h"
+#include "perception/bin_state.h"
 #include "perception/coverage.h"
 #include "perception/leao2020/depth_image.h"
 #include "perception/leao2020/tubes.h"
@@ -97,7 +98,9 @@ TubeScene PerceiveLeao2020(const std::vector<OrganizedCloud>& views, const Part&
   const Coverage coverage = MeasureCoverage(images, bin, parallelism);
   scene.unseen_floor_m2 = coverage.unseen_floor_m2;
   scene.unseen_m3 = coverage.unseen_m3;
-  scene.unexplained_points = CountUnexplained(filtered.chosen_N, scene.tubes, part.radius_m);
+  scene.unseen_floor = coverage.unseen_floor;
+  scene.unexplained_N = FindUnexplained(filtered.chosen_N, scene.tubes, part.radius_m);
+  JudgeBinContent(scene, images, part, bin);
   scene.timing_ms.crossings = timer.Lap();
   TubeScene::Timing& t = scene.timing_ms;
   t.total = t.filter + t.segment + t.fit + t.join + t.crossings;

@@ -1,44 +1,16 @@
 // The program as a user meets it: exit codes and messages for bad input, and small real runs.
 
-#include <sys/wait.h>
-
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 
 #include "hw_bridge/base/files.h"
 #include "hw_bridge/base/json.h"
 #include "tests/support/catch.h"
+#include "tests/support/program.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
 namespace {
-
-struct Outcome {
-  int code = 0;
-  std::string out, err;
-};
-
-/// Runs `tubetwin ARGUMENTS` in `folder`; `environment` goes before it ("A=b ").
-Outcome RunProgram(const TemporaryFolder& folder, const std::string& arguments,
-                   const std::string& environment = "") {
-  const std::string command = "cd '" + folder.path() + "' && " + environment + "'" +
-                              TUBETWIN_BINARY + "' " + arguments + " > out.txt 2> err.txt";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(folder.path() + "/out.txt"),
-          ReadFile(folder.path() + "/err.txt")};
-}
-
-void Write(const TemporaryFolder& folder, const std::string& name, const std::string& text) {
-  std::ofstream(folder.path() + "/" + name, std::ios::binary) << text;
-}
-
-int Lines(const std::string& text) {
-  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-}
 
 const char* const kGoodPile =
     R"({"schema": "tubetwin/pile/1", "bin": {"size_m": [0.77, 0.58, 0.09]}, "part": "pvc_a",
@@ -49,17 +21,6 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
   const auto at = text.find(from);
   REQUIRE(at != std::string::npos);
   return text.replace(at, from.size(), to);
-}
-
-void CheckRefused(const TemporaryFolder& folder, const std::string& arguments, int code,
-                  const std::string& said, const std::string& environment = "") {
-  INFO(arguments);
-  const Outcome outcome = RunProgram(folder, arguments, environment);
-  INFO(outcome.err);
-  CHECK(outcome.code == code);
-  CHECK(outcome.err.find(said) != std::string::npos);
-  CHECK(Lines(outcome.err) >= 1);
-  CHECK(Lines(outcome.err) <= 4);
 }
 
 TEST_CASE("A missing input ends with 66 and names the file or the nearest part", "[app]") {
@@ -107,23 +68,6 @@ TEST_CASE("A bad pile ends with 65, naming file and field", "[app]") {
         Replaced(kGoodPile, "\"radius_m\": 0.0125", "\"radius_m\": \"thick\""));
   CheckRefused(folder, "run --pile type.json --out o", 65, "radius_m");
   CHECK_FALSE(std::filesystem::exists(folder.path() + "/o/picks.jsonl"));
-}
-
-TEST_CASE("A bad cloud ends with 65 and costs no memory", "[app]") {
-  const TemporaryFolder folder;
-  const std::string head =
-      "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
-  Write(folder, "short.pcd",
-        head + "WIDTH 4\nHEIGHT 2\nVIEWPOINT 0 0 0.5 0 1 0 0\nPOINTS 8\nDATA binary\n1234");
-  CheckRefused(folder, "perceive short.pcd --part pvc_a --out t.json", 65, "short.pcd");
-  Write(folder, "huge.pcd",
-        head +
-            "WIDTH 1000000\nHEIGHT 1000000\nVIEWPOINT 0 0 0.5 0 1 0 0\nPOINTS 1000000000000\nDATA "
-            "binary\n1234");
-  // Under a limit of 1 GiB of memory: nothing may be allocated from the header's word.
-  CheckRefused(folder, "perceive huge.pcd --part pvc_a --out t.json", 65, "huge.pcd",
-               "ulimit -v 4194304; ");
-  CHECK_FALSE(std::filesystem::exists(folder.path() + "/t.json"));
 }
 
 TEST_CASE("An output that cannot be made ends with 73", "[app]") {

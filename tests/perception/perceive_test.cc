@@ -149,7 +149,7 @@ TEST_CASE("An empty bin holds no tube and nothing unexplained", "[unit]") {
   const ToyScene scene;
   const TubeScene seen = See(scene, EightViews(scene, 6), 0.50);
   CHECK(seen.tubes.empty());
-  CHECK(seen.unexplained_points == 0);
+  CHECK(seen.unexplained_N.empty());
   // The walls' shadows are strips of the floor.
   CHECK(seen.unseen_floor_m2 < 0.2 * 0.77 * 0.58);
   Look above;
@@ -226,7 +226,7 @@ TEST_CASE("A box and a ball pen's width of stick stay unexplained", "[unit]") {
   scene.boxes = {{{-0.1, 0.05, 0.0}, {0.1, 0.15, 0.04}}, {{0.15, 0.0, 0.0}, {0.30, 0.008, 0.010}}};
   const TubeScene seen = See(scene, EightViews(scene, 10), 0.5);
   CHECK(seen.tubes.size() == 1);
-  CHECK(seen.unexplained_points > 100);
+  CHECK(seen.unexplained_N.size() > 100);
 }
 
 TEST_CASE("The gripper's fingers at the edge of a view are no tube", "[unit]") {

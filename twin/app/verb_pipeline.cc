@@ -1,4 +1,3 @@
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -8,7 +7,6 @@
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
 #include "hw_bridge/base/text.h"
-#include "perception/step_timer.h"
 #include "planner/arm_feasibility.h"
 #include "planner/choose.h"
 #include "planner/evaluator/evaluator.h"
@@ -94,85 +92,6 @@ int ScanPile(const ScanOptions& scan, const Common& common) {
                     base + ".truth.json");
     }
   }
-  return 0;
-}
-
-// ---- perceive ----
-
-struct PerceiveOptions {
-  std::vector<std::string> clouds;
-  std::string part, bin, profile, pose, labelled;
-};
-
-RigidTransform ParsePose(const std::string& text) {
-  std::vector<double> numbers;
-  const char* at = text.c_str();
-  while (*at != '\0') {
-    char* end = nullptr;
-    const double value = std::strtod(at, &end);
-    if (end == at || !std::isfinite(value)) break;
-    numbers.push_back(value);
-    at = *end == ',' ? end + 1 : end;
-    if (*end != ',' && *end != '\0') break;
-  }
-  if (numbers.size() != 7 || *at != '\0') {
-    throw Error(ErrorKind::kUsage,
-                "--pose '" + text + "': tx,ty,tz,qw,qx,qy,qz is needed (metres, scanner in bin)");
-  }
-  const Eigen::Vector4d q(numbers[3], numbers[4], numbers[5], numbers[6]);
-  if (std::abs(q.norm() - 1.0) > 1e-2) {
-    throw Error(ErrorKind::kUsage, "--pose '" + text + "': qw,qx,qy,qz has length " +
-                                       Number(q.norm()) + ", 1 is needed");
-  }
-  return MakeTransform(RotationFromWxyz(q[0], q[1], q[2], q[3]),
-                       Vector3(numbers[0], numbers[1], numbers[2]));
-}
-
-/// Each valid point gets 2 + index of the tube it lies nearest to (at most 1.6 radii), else 0.
-void LabelByTubes(OrganizedCloud& cloud, const TubeScene& scene) {
-  cloud.label.assign(cloud.size(), kLabelNone);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!IsValid(cloud.p_SP[i])) continue;
-    const Vector3 p_NP = cloud.X_NS * cloud.p_SP[i].cast<double>();
-    double best = 1e9;
-    for (std::size_t k = 0; k < scene.tubes.size(); ++k) {
-      const double reach = 1.6 * scene.tubes[k].radius_m;
-      const double distance = Closest(scene.tubes[k].centerline_N, p_NP).distance_m;
-      if (distance < best && distance < reach) {
-        best = distance;
-        cloud.label[i] = kLabelFirstTube + static_cast<std::uint32_t>(k);
-      }
-    }
-  }
-}
-
-int PerceiveClouds(const PerceiveOptions& given, const Common& common) {
-  const Part part = LoadPart(given.part);
-  Bin bin;
-  if (!given.bin.empty()) bin.size_m = ParseBinSize(given.bin);
-  const Scenario scenario = LoadScenario({}, common);
-  std::vector<OrganizedCloud> views;
-  StepTimer timer;
-  for (const std::string& file : given.clouds) {
-    views.push_back(ReadCloud(file));
-    if (!given.pose.empty()) views.back().X_NS = ParsePose(given.pose);
-    views.back().label.clear();  // The pipeline never sees labels.
-  }
-  const double load_ms = timer.Lap();
-  TubeScene scene = Perceive(views, part, bin, scenario.perception, common.parallelism());
-  scene.timing_ms.load = load_ms;
-  for (const std::string& text : scene.warnings) Say(common, "warning: " + text);
-  Json out = ToJson(scene);
-  out["part"] = PartToJson(part);
-  out["bin"] = ToJson(bin);
-  WriteJsonFile(out, common.out);
-  if (!given.labelled.empty()) {
-    LabelByTubes(views.front(), scene);
-    WritePcd(views.front(), given.labelled);
-  }
-  Say(common, std::to_string(scene.tubes.size()) + " tubes, " +
-                  std::to_string(scene.crossings.size()) + " crossings, " +
-                  std::to_string(scene.unexplained_points) + " unexplained points: " + common.out);
   return 0;
 }
 
@@ -287,26 +206,6 @@ void AddScanVerb(CLI::App& app, Common& common) {
   AddCommonOptions(*verb, common, "Folder for view_N.pcd and .ply", true);
   verb->callback(
       [given, &common] { common.action = [given, &common] { return ScanPile(*given, common); }; });
-}
-
-void AddPerceiveVerb(CLI::App& app, Common& common) {
-  auto given = std::make_shared<PerceiveOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "perceive",
-      "Example: tubetwin perceive out/scan/view_*.pcd --part pvc_a --out tubes.json\n\n"
-      "Tubes and crossings from clouds alone.");
-  verb->add_option("clouds", given->clouds, "PCD or PLY files, one per view")->required();
-  verb->add_option("--part", given->part, "Part name or part file")->required();
-  verb->add_option("--bin", given->bin, "Inner size of the bin: long,short,wall in metres");
-  verb->add_option("--profile", given->profile, "Pipeline profile")->check(CLI::IsMember({"best"}));
-  verb->add_option("--pose", given->pose,
-                   "tx,ty,tz,qw,qx,qy,qz of the scanner in the bin, where a file has none");
-  verb->add_option("--labelled", given->labelled,
-                   "Also write the first cloud with each point's tube");
-  AddCommonOptions(*verb, common, "tubes.json to write", true);
-  verb->callback([given, &common] {
-    common.action = [given, &common] { return PerceiveClouds(*given, common); };
-  });
 }
 
 void AddPlanVerb(CLI::App& app, Common& common) {

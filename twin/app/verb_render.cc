@@ -1,9 +1,12 @@
+#include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/base/error.h"
 #include "twin/app/common.h"
+#include "twin/render/perceived_picture.h"
 #include "twin/render/pile_picture.h"
 #include "twin/render/recording.h"
 
@@ -14,6 +17,54 @@ struct RenderOptions {
   std::string file, part, bin;
   int frame = 0, speed = 1;
 };
+
+/// Lines that hatch the cells of a row that no view saw.
+void HatchRow(const UnseenFloor& floor, int row, std::vector<Polyline>& lines_N) {
+  const double x0 = -0.5 * floor.columns * floor.cell_x_m;
+  const double y = (row + 0.5 - 0.5 * floor.rows) * floor.cell_y_m;
+  for (int i = 0; i < floor.columns;) {
+    int end = i;
+    while (end < floor.columns &&
+           floor.unseen[static_cast<std::size_t>(row) * floor.columns + end] != 0) {
+      ++end;
+    }
+    if (end > i) {
+      lines_N.push_back({{x0 + i * floor.cell_x_m, y, 0}, {x0 + end * floor.cell_x_m, y, 0}});
+    }
+    i = end + 1;
+  }
+}
+
+void RenderTubes(const RenderOptions& given, const Json& json, const std::string& out) {
+  const JsonView document(json, given.file);
+  const TubeScene scene = TubeSceneFromJson(document);
+  PerceivedPicture picture;
+  if (const auto bin = document.Optional("bin")) picture.bin = BinFromJson(*bin);
+  if (!given.bin.empty()) picture.bin.size_m = ParseBinSize(given.bin);
+  for (const PerceivedTube& tube : scene.tubes) {
+    picture.tubes.push_back({tube.id, tube.centerline_N, tube.node_visible, tube.radius_m,
+                             static_cast<int>(tube.tube_class)});
+  }
+  picture.unexplained_N = scene.unexplained_N;
+  for (int row = 0; row < scene.unseen_floor.rows; ++row) {
+    HatchRow(scene.unseen_floor, row, picture.unseen_floor_N);
+  }
+  char unseen[64];
+  std::snprintf(unseen, sizeof unseen, ", %.3f m2 of the floor and %.4f m3 unseen",
+                scene.unseen_floor_m2, scene.unseen_m3);
+  picture.caption = std::to_string(scene.tubes.size()) + " tubes, " +
+                    std::to_string(scene.crossings.size()) + " crossings, " +
+                    std::to_string(scene.unexplained_N.size()) + " unexplained points" + unseen;
+  RenderPerceivedPicture(picture, out);
+}
+
+/// Whether a JSON file is a tubes.json; other files are not read.
+std::optional<Json> TubesJson(const std::string& file) {
+  if (std::filesystem::path(file).extension() != ".json") return std::nullopt;
+  Json json = ReadJsonFile(file);
+  if (!json.is_object() || json.value("schema", Json()) != "tubetwin/tubes/1") return std::nullopt;
+  return json;
+}
 
 int Render(const RenderOptions& given, const Common& common) {
   const std::string ending = std::filesystem::path(common.out).extension().string();
@@ -29,6 +80,10 @@ int Render(const RenderOptions& given, const Common& common) {
     if (ending != ".png") {
       throw Error(ErrorKind::kUsage,
                   given.file + ": a pile gives a picture; a film needs a recording");
+    }
+    if (const auto json = TubesJson(given.file)) {
+      RenderTubes(given, *json, common.out);
+      return 0;
     }
     PileOverrides overrides;
     if (!given.part.empty()) overrides.part = given.part;
@@ -57,8 +112,10 @@ void AddRenderVerb(CLI::App& app, Common& common) {
   CLI::App* verb = app.add_subcommand(
       "render",
       "Example: tubetwin render out/first/recording.bin --out film.mp4\n\n"
-      "Pictures and films of recordings, pictures of piles; no display is needed.");
-  verb->add_option("file", given->file, "recording.bin of a result folder, or a pile")->required();
+      "Pictures and films of recordings, pictures of piles and of what was perceived; no display "
+      "is needed.");
+  verb->add_option("file", given->file, "recording.bin of a result folder, a pile, or tubes.json")
+      ->required();
   verb->add_option("--frame", given->frame, "Frame of the recording, for a picture")
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--speed", given->speed, "Every N-th frame: N times as fast")

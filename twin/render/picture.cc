@@ -11,8 +11,7 @@
 namespace tubetwin {
 namespace {
 
-/// A tag with the tube's id, small enough to hide nothing.
-void DrawTag(cv::Mat& image, const Eigen::Vector2d& at, const std::string& text) {
+void DrawCircledText(cv::Mat& image, const Eigen::Vector2d& at, const std::string& text) {
   constexpr double kScale = 0.5;
   int baseline = 0;
   const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, kScale, 1, &baseline);
@@ -35,6 +34,13 @@ Vector3 Highest(const Polyline& line, const Vector3& up) {
 }
 
 }  // namespace
+
+void DrawTag(Image& image, const View& view, const Polyline& line_B, const Vector3& up_B,
+             const std::string& text) {
+  cv::Mat pixels(image.height, image.width, CV_8UC3, image.bgr.data());
+  const auto at = Project(view, image.width, image.height, Highest(line_B, up_B));
+  if (at) DrawCircledText(pixels, *at, text);
+}
 
 View PileView(const Bin& bin) {
   const double size = std::max(bin.size_m[0], 1.3 * bin.size_m[1]);
@@ -63,16 +69,18 @@ void WritePng(const Image& image, const std::string& path) {
 }
 
 void RenderPilePicture(const Pile& pile, const std::string& path) {
-  const MjModel model = CompileStage(pile);
+  std::vector<std::array<double, 3>> colours;
+  for (std::size_t i = 0; i < pile.tubes.size(); ++i) {
+    colours.push_back(PileColour(static_cast<int>(i)));
+  }
+  const MjModel model = CompileStage(pile, colours);
   const MjData data = MakeData(*model);
   SceneRenderer renderer(*model, kPictureWidth, kPictureHeight);
   const View view = PileView(pile.bin);
   Image image = renderer.Draw(*data, view, {});
-  cv::Mat pixels(image.height, image.width, CV_8UC3, image.bgr.data());
   for (const PileTube& tube : pile.tubes) {
-    const Polyline line_B = Transformed(pile.bin.X_BN, tube.centerline_N);
-    const auto at = Project(view, image.width, image.height, Highest(line_B, pile.bin.up_B()));
-    if (at) DrawTag(pixels, *at, std::to_string(tube.id));
+    DrawTag(image, view, Transformed(pile.bin.X_BN, tube.centerline_N), pile.bin.up_B(),
+            std::to_string(tube.id));
   }
   WritePng(image, path);
 }

@@ -151,7 +151,8 @@ MjModel CompileStage(const std::string& cell_xml, const std::string& source, Sta
   }
 }
 
-MjModel CompileStage(const Pile& pile) {
+MjModel CompileStage(const Pile& pile, const std::vector<std::array<double, 3>>& colours) {
+  TT_CHECK(colours.size() == pile.tubes.size());
   const MjSpec spec = MakeSpec();
   BinBodyOptions bin;
   bin.X_WN = pile.bin.X_BN;
@@ -161,7 +162,7 @@ MjModel CompileStage(const Pile& pile) {
   TubeBodyOptions tube_options =
       MakeTubeBodyOptions(pile.part, NominalPhysics(pile.part), pile.bin.X_BN);
   for (std::size_t i = 0; i < pile.tubes.size(); ++i) {
-    tube_options.colour_rgb = PileColour(static_cast<int>(i));
+    tube_options.colour_rgb = colours[i];
     TubeBody(*spec, "tube_" + std::to_string(pile.tubes[i].id), pile.tubes[i], tube_options);
   }
   const Vector3 centre_B = pile.bin.X_BN * Vector3(0, 0, 0.5 * pile.bin.wall_m());

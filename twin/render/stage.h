@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "scenes/engine/mj_handles.h"
 #include "scenes/pile.h"
@@ -26,7 +27,7 @@ MjModel CompileStage(const std::string& cell_xml, const std::string& source, Sta
 /// Red, green, blue of a pile's tube in its picture.
 std::array<double, 3> PileColour(int tube);
 
-/// The bin with its tubes at rest, each in a colour of its own, dressed. Frame B.
-MjModel CompileStage(const Pile& pile);
+/// The bin with its tubes at rest in `colours` (one for each), dressed. Frame B.
+MjModel CompileStage(const Pile& pile, const std::vector<std::array<double, 3>>& colours);
 
 }  // namespace tubetwin

@@ -1,0 +1,178 @@
+// The verb `perceive` as a user meets it: clouds that are bad in every way we know, poses, labels.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "hw_bridge/base/cloud.h"
+#include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
+#include "tests/support/catch.h"
+#include "tests/support/program.h"
+
+namespace tubetwin {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kPose = "VIEWPOINT 0 0 0.5 0 1 0 0\n";
+
+/// A binary PCD of `points` records of x y z; `bytes` is the data.
+std::string Pcd(const std::string& width, const std::string& height, const std::string& points,
+                const std::string& bytes, const std::string& view = kPose) {
+  return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " +
+         width + "\nHEIGHT " + height + "\n" + view + "POINTS " + points + "\nDATA binary\n" +
+         bytes;
+}
+
+std::string Floats(std::size_t count, float value) {
+  std::string out(4 * count, '\0');
+  for (std::size_t i = 0; i < count; ++i) std::memcpy(out.data() + 4 * i, &value, 4);
+  return out;
+}
+
+/// A picture of 20 x 20 points of a flat floor 0.5 m below the scanner.
+std::string FlatFloor() {
+  std::string out;
+  for (int i = 0; i < 400; ++i) {
+    const float p[3] = {0.01f * static_cast<float>(i % 20 - 10),
+                        0.01f * static_cast<float>(i / 20 - 10), 0.5f};
+    out.append(reinterpret_cast<const char*>(p), 12);
+  }
+  return out;
+}
+
+/// Exit 65, one sentence that names the file and `said`, nothing written, little memory taken.
+void CheckBadCloud(const TemporaryFolder& folder, const std::string& name,
+                   const std::string& content, const std::string& said,
+                   const std::string& more = "") {
+  Write(folder, name, content);
+  const std::string arguments =
+      "perceive " + name + " --part pvc_a --labelled l.pcd --out t.json " + more;
+  CheckRefused(folder, arguments, 65, said, "ulimit -v 1048576; ");
+  CheckRefused(folder, arguments, 65, name);
+  CHECK_FALSE(fs::exists(folder.path() + "/t.json"));
+  CHECK_FALSE(fs::exists(folder.path() + "/l.pcd"));
+}
+
+TEST_CASE("A bad cloud ends with 65, costs no memory and leaves nothing", "[app]") {
+  const TemporaryFolder folder;
+  const std::string good = Pcd("20", "20", "400", FlatFloor());
+  const std::string ply =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 100000000\nproperty float x\n"
+      "property float y\nproperty float z\nend_header\n";
+  const struct {
+    const char* name;
+    std::string content;
+    const char* said;
+  } cases[] = {
+      {"empty.pcd", "", "the file ends inside its header"},
+      {"empty.ply", "", "the file ends inside its header"},
+      {"nan.pcd", Pcd("20", "20", "400", Floats(1200, std::nanf(""))),
+       "x y z: 0 of 400 points are valid"},
+      {"zero.pcd", Pcd("20", "20", "400", Floats(1200, 0.0f)), "0 of 400 points are valid"},
+      {"pixel.pcd", Pcd("1", "1", "1", Floats(3, 0.4f)), "1 of 1 points are valid"},
+      {"nopose.pcd", Pcd("20", "20", "400", FlatFloor(), ""), "no pose"},
+      {"identity.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 0 1 0 0 0\n"), "no pose"},
+      {"nanpose.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 nan 0 1 0 0\n"),
+       "VIEWPOINT holds 'nan'"},
+      {"infpose.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 inf 0 1 0 0\n"),
+       "VIEWPOINT holds 'inf'"},
+      {"zeropose.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 0 0 0 0 0\n"), "norm 0"},
+      {"cut.pcd", good.substr(0, good.size() - 5), "4795 bytes of data"},
+      {"header.pcd", good.substr(0, 40), "the file ends inside its header"},
+      {"million.pcd", Pcd("10000", "10000", "100000000", "1234"), "POINTS 100000000"},
+      {"billion.pcd", Pcd("1000000", "1000000", "1000000000000", "1234"), "POINTS 1000000000000"},
+      {"wrap.pcd", Pcd("2147483647", "2147483647", "4611686014132420609", "1234"),
+       "POINTS 4611686014132420609"},
+      {"million.ply", ply, "100000000"},
+      {"negative.pcd", Pcd("-4", "2", "-8", "1234"), "WIDTH is '-4'"},
+      {"nothing.pcd", Pcd("0", "0", "0", ""), "WIDTH is '0'"},
+      {"garbage.pcd", std::string("GIF89a\x01\x02\x03 garbage\n"), "garbage.pcd"},
+      {"text.pcd", "tube,index,x,y,z\n1,0,0.1,0.1,0.02\n", "no PCD header entry"},
+      {"text.ply", "solid bin\n", "no PLY file"},
+  };
+  for (const auto& c : cases) CheckBadCloud(folder, c.name, c.content, c.said);
+  auto changed = [&good](const std::string& from, const std::string& to) {
+    std::string text = good;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  CheckBadCloud(folder, "fields.pcd", changed("FIELDS x y z", "FIELDS x y q"), "FIELDS lacks 'z'");
+  CheckBadCloud(folder, "type.pcd", changed("TYPE F F F", "TYPE F U F"), "field 'y' has TYPE U");
+  CheckBadCloud(folder, "size.pcd", changed("SIZE 4 4 4", "SIZE 4 4 -4"), "SIZE of field 'z'");
+  CheckBadCloud(folder, "zip.pcd", changed("DATA binary", "DATA binary_compressed"),
+                "DATA is 'binary_compressed'");
+  CheckBadCloud(folder, "ascii.pcd", changed("DATA binary", "DATA ascii"), "no number");
+  CheckBadCloud(folder, "points.pcd", changed("POINTS 400", "POINTS 401"), "WIDTH x HEIGHT");
+  CheckBadCloud(folder, "a.xyz", "1 2 3\n", "allowed are .pcd, .ply");
+  // One bad cloud among good ones is as bad.
+  Write(folder, "good.pcd", good);
+  CheckBadCloud(folder, "second.pcd", Pcd("1", "1", "1", Floats(3, 0.4f)), "1 of 1 points",
+                "good.pcd");
+}
+
+TEST_CASE("A cloud without a pose takes that of --pose, one with a pose keeps it", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "none.pcd", Pcd("20", "20", "400", FlatFloor(), ""));
+  Write(folder, "has.pcd", Pcd("20", "20", "400", FlatFloor()));
+  const Outcome outcome = RunProgram(
+      folder,
+      "perceive none.pcd has.pcd --part pvc_a --pose -0.1,0,0.5,0,1,0,0 --labelled l.pcd "
+      "--out t.json");
+  INFO(outcome.err);
+  REQUIRE(outcome.code == 0);
+  CHECK(outcome.err.find("has.pcd: has a pose") != std::string::npos);
+  CHECK(outcome.err.find("none.pcd") == std::string::npos);
+  const Json tubes = Json::parse(ReadFile(folder.path() + "/t.json"));
+  CHECK(tubes["tubes"].empty());
+  const OrganizedCloud first = ReadCloud(folder.path() + "/l.pcd");
+  const OrganizedCloud second = ReadCloud(folder.path() + "/l_1.pcd");
+  CHECK(first.X_NS.translation().isApprox(Vector3(-0.1, 0, 0.5)));
+  CHECK(second.X_NS.translation().isApprox(Vector3(0, 0, 0.5)));
+  CHECK(std::count(first.label.begin(), first.label.end(), kLabelCell) == 400);
+  CheckRefused(folder, "perceive none.pcd --part pvc_a --pose 0,0,0.5 --out u.json", 64, "--pose");
+  CheckRefused(folder, "perceive none.pcd --part pvc_a --pose 0,0,nan,0,1,0,0 --out u.json", 64,
+               "--pose");
+  CHECK_FALSE(fs::exists(folder.path() + "/u.json"));
+}
+
+TEST_CASE("What was perceived is drawn, and --pose floor gives the same bin", "[app][render]") {
+  const TemporaryFolder folder;
+  Write(folder, "p.json",
+        R"({"schema": "tubetwin/pile/1", "bin": {"size_m": [0.77, 0.58, 0.09]}, "part": "pvc_a",
+ "tubes": [{"id": 4, "centerline_m": [[-0.24, 0, 0.0125], [0.26, 0, 0.0125]], "radius_m": 0.0125,
+ "mass_kg": 0.055}], "seed": 1, "settled": false})");
+  REQUIRE(RunProgram(folder, "scan p.json --out s").code == 0);
+  const Outcome outcome =
+      RunProgram(folder, "perceive s/view_*.pcd --part pvc_a --labelled l.pcd --out t.json");
+  INFO(outcome.err);
+  REQUIRE(outcome.code == 0);
+  const Json tubes = Json::parse(ReadFile(folder.path() + "/t.json"));
+  CHECK(tubes["tubes"].size() == 1);
+  CHECK(tubes["bin_content"] == "not_empty");
+  CHECK(tubes["timing_ms"]["load"].get<double>() > 0.0);
+  const OrganizedCloud labelled = ReadCloud(folder.path() + "/l_4.pcd");
+  CHECK(std::count(labelled.label.begin(), labelled.label.end(), kLabelFirstTube) > 1000);
+  REQUIRE(RunProgram(folder, "render t.json --out t.png").code == 0);
+  CHECK(fs::file_size(folder.path() + "/t.png") > 10000);
+  // One view of a corner of the bin shows two walls, so that it can do without its pose.
+  OrganizedCloud corner = ReadCloud(folder.path() + "/s/view_0.pcd");
+  const RigidTransform X_NS = corner.X_NS;
+  corner.X_NS = RigidTransform::Identity();
+  WritePcd(corner, folder.path() + "/c.pcd");
+  const Outcome fitted = RunProgram(
+      folder, "perceive c.pcd --part pvc_a --pose floor --labelled c_l.pcd --out c.json");
+  INFO(fitted.err);
+  REQUIRE(fitted.code == 0);
+  const RigidTransform found = ReadCloud(folder.path() + "/c_l.pcd").X_NS;
+  constexpr double kShift_m = 0.003;
+  CHECK(found.translation().z() == Approx(X_NS.translation().z()).margin(kShift_m));
+  CHECK(found.translation().head<2>().norm() ==
+        Approx(X_NS.translation().head<2>().norm()).margin(kShift_m));
+  CheckRefused(folder, "perceive c.pcd c.pcd --part pvc_a --pose floor --out d.json", 64,
+               "--pose floor is for one cloud");
+}
+
+}  // namespace
+}  // namespace tubetwin
