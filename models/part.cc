@@ -1,6 +1,7 @@
 #include "models/part.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "hw_bridge/base/error.h"
@@ -29,6 +30,32 @@ void CheckOrder(const std::vector<double>& range, const char* key, ErrorKind kin
                         "]; the first number must not be above the second");
 }
 
+// A fixed shape is a line that physics can build.
+void CheckCenterline(const Part& part, ErrorKind kind, const std::string& source) {
+  constexpr double kShortestPiece_m = 0.001, kLargestDifference = 0.02;
+  const std::size_t numbers = part.centerline_m.size();
+  if (part.shape != "fixed") {
+    if (numbers == 0) return;
+    throw Error(kind, source + ": centerline_m is given, but shape is \"" + part.shape +
+                          "\"; only \"fixed\" has one");
+  }
+  if (numbers < 6 || numbers % 3 != 0 || numbers > 3 * 200) {
+    throw Error(kind, source + ": centerline_m has " + std::to_string(numbers) +
+                          " numbers; shape \"fixed\" needs x y z of 2 to 200 points");
+  }
+  const Polyline line = part.centerline();
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    if ((line[i] - line[i - 1]).norm() >= kShortestPiece_m) continue;
+    throw Error(kind, source + ": centerline_m: points " + std::to_string(i - 1) + " and " +
+                          std::to_string(i) + " are closer than 1 mm");
+  }
+  if (std::abs(Length(line) / part.length_m - 1.0) > kLargestDifference) {
+    throw Error(kind, source + ": centerline_m is " + Number(Length(line)) +
+                          " m long, but length_m is " + Number(part.length_m) +
+                          "; they may differ by 2 %");
+  }
+}
+
 // What no single field can say.
 void CheckPart(const Part& part, ErrorKind kind, const std::string& source) {
   CheckOrder(part.friction_range, "friction_range", kind, source);
@@ -40,6 +67,7 @@ void CheckPart(const Part& part, ErrorKind kind, const std::string& source) {
     throw Error(kind, source + ": length_m " + Number(part.length_m) + " is below four radii (" +
                           Number(4.0 * part.radius_m) + "); that is no tube");
   }
+  CheckCenterline(part, kind, source);
   const double hooks_m =
       2.0 * (kHookRadius_m * Radians(part.bend_deg[1]) + kShortestEnd_m) + kShortestEnd_m;
   if (part.shape == "hooks" && part.length_m < hooks_m) {
@@ -79,14 +107,24 @@ void Part::Visit(ConfigVisitor& v) {
   v.Field("links", "rigid links of a hose", links, {8, 12});
   v.Choice("shape",
            "how random shapes are drawn: arcs (planar bends), hooks (a bend near each end), "
-           "polyline (corners)",
-           shape, {"arcs", "hooks", "polyline"});
+           "polyline (corners), fixed (centerline_m)",
+           shape, {"arcs", "hooks", "polyline", "fixed"});
+  v.Field("centerline_m", "shape fixed: x y z of one point after another", centerline_m, 0,
+          {-3.0, 3.0});
   v.Field("bends", "number of bends, from and to", bends, 2, {1, 20});
   v.Field("bend_deg", "angle of one bend, from and to", bend_deg, 2, {0, 170});
   v.Field("colour_rgb", "colour in pictures, 0 to 1; the mean is what the scanner's light meets",
           colour_rgb, 3, {0, 1});
   v.Field("gloss", "share of points that the scanner loses where the surface mirrors its light",
           gloss, {0, 1});
+}
+
+Polyline Part::centerline() const {
+  Polyline line;
+  for (std::size_t i = 0; i + 2 < centerline_m.size(); i += 3) {
+    line.push_back({centerline_m[i], centerline_m[i + 1], centerline_m[i + 2]});
+  }
+  return line;
 }
 
 std::vector<std::string> PartNames() {

@@ -5,6 +5,7 @@
 
 #include "hw_bridge/base/config.h"
 #include "hw_bridge/base/json.h"
+#include "hw_bridge/base/polyline.h"
 
 namespace tubetwin {
 
@@ -21,8 +22,10 @@ struct Part {
   std::vector<double> bending_stiffness_range_Nm2 = {0.05, 0.30};
   int links = 10;  ///< Rigid links of a hose's chain, 8 to 12.
   /// How random shapes are drawn: "arcs" (planar bends over the whole length), "hooks" (a bend of
-  /// total/2 near each end, radius 50 mm, planes turned), "polyline" (the public set's corners).
+  /// total/2 near each end, radius 50 mm, planes turned), "polyline" (the public set's corners),
+  /// "fixed" (every tube is bent like centerline_m).
   std::string shape = "arcs";
+  std::vector<double> centerline_m;         ///< fixed: x y z of one point after another.
   std::vector<double> bends = {2, 4};       ///< arcs, polyline: number of bends, from and to.
   std::vector<double> bend_deg = {10, 70};  ///< Angle of one bend, from and to.
   std::vector<double> colour_rgb = {0.85, 0.85, 0.82};
@@ -33,6 +36,8 @@ struct Part {
   /// Share of light that the surface scatters back: mean of the colour.
   double albedo() const;
   bool is_hose() const { return kind == "hose"; }
+  /// centerline_m as points.
+  Polyline centerline() const;
   void Visit(ConfigVisitor& v);
 };
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -137,9 +138,9 @@ std::vector<Meeting> FindMeetings(const std::vector<Laid>& ring) {
 
 // Is every tube under another?
 bool AllCovered(const std::vector<Meeting>& meetings, std::size_t count) {
-  std::vector<char> covered(count, 0);
-  for (const Meeting& m : meetings) covered[m.under] = 1;
-  return std::count(covered.begin(), covered.end(), 1) == static_cast<std::ptrdiff_t>(count);
+  std::set<std::size_t> covered;
+  for (const Meeting& m : meetings) covered.insert(static_cast<std::size_t>(m.under));
+  return covered.size() == count;
 }
 
 // Moves the planes of up to two tubes by the least that closes a shortfall of height `missing_m`.

@@ -126,12 +126,14 @@ Polyline DrawShape(const Part& part, RandomStream& stream) {
     line = DrawHooks(part, stream);
   } else if (part.shape == "polyline") {
     line = DrawCorners(part, stream);
+  } else if (part.shape == "fixed") {
+    line = part.centerline();
   } else {
     line = DrawArcs(part, stream);
   }
   if (part.is_hose()) {
     line = ResampleCount(line, part.links + 1);
-  } else if (part.shape != "polyline") {
+  } else if (part.shape != "polyline" && part.shape != "fixed") {
     line = ResampleCount(line, kRigidPieces + 1);
   }
   // Chords are shorter than arcs: bring the whole to its length.

@@ -43,6 +43,34 @@ Vector3 TangentAt(const Polyline& line, double s, double window_m) {
   return (PointAt(line, centre + half) - PointAt(line, centre - half)).normalized();
 }
 
+Polyline Simplified(const Polyline& line, double tolerance_m) {
+  if (line.size() < 3) return line;
+  std::vector<char> kept(line.size(), 0);
+  kept.front() = kept.back() = 1;
+  std::vector<std::pair<std::size_t, std::size_t>> open = {{0, line.size() - 1}};
+  while (!open.empty()) {
+    const auto [from, to] = open.back();
+    open.pop_back();
+    double most = tolerance_m;
+    std::size_t at = from;
+    for (std::size_t i = from + 1; i < to; ++i) {
+      const double off = Closest({line[from], line[to]}, line[i]).distance_m;
+      if (off <= most) continue;
+      most = off;
+      at = i;
+    }
+    if (at == from) continue;
+    kept[at] = 1;
+    open.push_back({from, at});
+    open.push_back({at, to});
+  }
+  Polyline out;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (kept[i]) out.push_back(line[i]);
+  }
+  return out;
+}
+
 Polyline ResampleCount(const Polyline& line, int count) {
   TT_CHECK(count >= 2 && !line.empty());
   const std::vector<double> s = ArcLengths(line);

@@ -29,6 +29,10 @@ Polyline Resample(const Polyline& line, double step_m);
 /// Exactly `count` points at equal arc-length steps, both ends kept. Precondition: count >= 2.
 Polyline ResampleCount(const Polyline& line, int count);
 
+/// As few of the line's points as keep every other within `tolerance_m` of the pieces, both ends
+/// kept (Douglas and Peucker 1973).
+Polyline Simplified(const Polyline& line, double tolerance_m);
+
 /// Part of the line between two arc lengths (clamped, from < to).
 Polyline SubLine(const Polyline& line, double from_m, double to_m);
 

@@ -5,44 +5,12 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/text.h"
-#include "models/gripper_spec.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/app/common.h"
 #include "twin/render/gl/egl_context.h"
 
 namespace tubetwin {
 namespace {
-
-int CheckPart(const std::string& file, const Common& common) {
-  const Part part = LoadPart(file);
-  const GripperSpec gripper;
-  if (2 * part.radius_m + 0.008 > gripper.stroke_m) {
-    throw Error(ErrorKind::kBadData, file + ": radius_m = " + Number(part.radius_m) +
-                                         ": the gripper opens " + Number(gripper.stroke_m) +
-                                         " m; at most " + Number(0.5 * (gripper.stroke_m - 0.008)));
-  }
-  if (common.json) {
-    std::printf("%s\n", PartToJson(part).dump(2).c_str());
-    return 0;
-  }
-  const double weight_N = part.mass_kg * kGravity;
-  std::printf("%s: %s, radius %s m, length %s m, %s kg\n", part.name.c_str(), part.kind.c_str(),
-              Number(part.radius_m).c_str(), Number(part.length_m).c_str(),
-              Number(part.mass_kg).c_str());
-  std::printf("weight %.3f N = %.0f steps of the force sensor (1/40 N)\n", weight_N,
-              weight_N * 40.0);
-  if (part.is_hose()) {
-    const double half = 0.5 * part.length_m;
-    std::printf("held in the middle each half sags %.1f mm (beam, EI %s N m^2)\n",
-                1e3 * weight_N / part.length_m * half * half * half * half /
-                    (8 * part.bending_stiffness_Nm2),
-                Number(part.bending_stiffness_Nm2).c_str());
-  }
-  if (weight_N < 10.0 / 40.0) {
-    std::printf("warning: lighter than 10 sensor steps, one and two tubes may not be told apart\n");
-  }
-  return 0;
-}
 
 struct Finding {
   std::string what, state, fix;  ///< Empty fix: fine.
@@ -87,22 +55,6 @@ int Doctor(const Common& common) {
 }
 
 }  // namespace
-
-void AddPartVerb(CLI::App& app, Common& common) {
-  CLI::App* part = app.add_subcommand("part",
-                                      "Example: tubetwin part check my_tube.toml\n\n"
-                                      "A user's own tube.");
-  part->require_subcommand(1);
-  auto file = std::make_shared<std::string>();
-  CLI::App* check = part->add_subcommand(
-      "check",
-      "Example: tubetwin part check my_tube.toml\n\nReads a part, checks it, says what it "
-      "means for sensor and gripper.");
-  check->add_option("part", *file, "Part file (TOML) or name")->required();
-  AddCommonOptions(*check, common, "", false);
-  check->callback(
-      [file, &common] { common.action = [file, &common] { return CheckPart(*file, common); }; });
-}
 
 void AddDoctorVerb(CLI::App& app, Common& common) {
   CLI::App* verb = app.add_subcommand(
