@@ -90,10 +90,20 @@ class Chooser {
   }
 
  private:
+  TubeClass ClassOf(const PerceivedTube& tube) const {
+    return config_.classes == "occluded_joints" ? tube.class_paper.value_or(tube.tube_class)
+                                                : tube.tube_class;
+  }
+
   std::vector<Target> Targets(bool free) {
     std::vector<Target> targets;
     for (const PerceivedTube& tube : scene_.tubes) {
-      if ((tube.tube_class == TubeClass::kFree) != free) continue;
+      const TubeClass seen_as = ClassOf(tube);
+      if ((seen_as == TubeClass::kFree) != free) continue;
+      if (seen_as == TubeClass::kStrong && config_.classes == "occluded_joints") {
+        result_.rejections.push_back({tube.id, "", "", "strongly occluded tubes are not picked"});
+        continue;
+      }
       if (tube.centerline_N.size() < 2 || Length(tube.centerline_N) <= 0.0) continue;
       Target target{&tube, DoubtAbout(tube, part_, config_), {}};
       target.sites = FindGraspSites(scene_, tube, points_N_, bin_, config_);
@@ -116,7 +126,7 @@ class Chooser {
     std::vector<Option> options;
     if (config_.exclude_free) {
       for (const PerceivedTube& tube : scene_.tubes) {
-        if (tube.tube_class != TubeClass::kFree) continue;
+        if (ClassOf(tube) != TubeClass::kFree) continue;
         result_.rejections.push_back({tube.id, "", "", "free tubes are excluded"});
       }
       return options;
@@ -245,7 +255,7 @@ class Chooser {
       return;
     }
     const bool jams = score != nullptr && score->status == CandidateScore::Status::kJammed;
-    const bool free = tube.tube_class == TubeClass::kFree;
+    const bool free = ClassOf(tube) == TubeClass::kFree;
     GraspSet grasps =
         RankGrasps(target.sites, tube, motion, score != nullptr ? score->displacement_m : 0.0,
                    top_m_, bin_, config_);
@@ -256,7 +266,7 @@ class Chooser {
                     : target.doubt.empty() ? (free ? kCertainFree : kCertainCovered)
                                            : (free ? kDoubtfulFree : kDoubtfulCovered);
       option.plan.target = tube.id;
-      option.plan.target_class = tube.tube_class;
+      option.plan.target_class = ClassOf(tube);
       option.plan.motion = motion;
       option.plan.grasp = grasp;
       option.plan.used_simulator = score != nullptr;

@@ -25,8 +25,9 @@ using FeasibilityFunction =
 /// cost: the grasp's, plus doubt about the tube, plus the probability that another tube comes
 /// along. Plans are checked by `feasible` in this order, each with either of the gripper's two
 /// equal yaws, until `max_plans` are found; places of one tube at least 20 mm apart, so that a
-/// second try is another try. Nothing to pick is an empty list; `rejections` says why for every
-/// tube. `points_N`: ThinPoints of the views, or empty. Deterministic but for the wall times.
+/// second try is another try. Classes are those of `config.classes`. Nothing to pick is an empty
+/// list; `rejections` says why for every tube. `points_N`: ThinPoints of the views, or empty.
+/// Deterministic but for the wall times.
 PlanResult PlanPicks(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
                      const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,
                      const FeasibilityFunction& feasible, std::uint64_t seed = 1);

@@ -13,9 +13,7 @@ constexpr double kFieldX = 0.5 * 2064.0 / 2534.0 + 0.12, kFieldY = 0.5 * 1544.0 
 }  // namespace
 
 Looker::Looker(CycleContext& context) : context_(context) {
-  poses_BS_ = DefaultScanPoses(context.cell.bin);
-  const auto wanted = static_cast<std::size_t>(context.setup.scan.views);
-  if (poses_BS_.size() > wanted) poses_BS_.resize(wanted);
+  poses_BS_ = ScanPoses(context.setup.scan, context.cell.bin);
   views_.resize(poses_BS_.size());
   taken_last_.assign(poses_BS_.size(), false);
   MarkAll();

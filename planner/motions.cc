@@ -153,10 +153,31 @@ HiddenStretch FindHiddenStretch(const PerceivedTube& over, const PerceivedTube& 
           std::min(length, std::max(walk(kStretchStep_m), crossing.at_under_m + over.radius_m))};
 }
 
+std::vector<HiddenStretch> OccludedJoints(const PerceivedTube& tube) {
+  std::vector<HiddenStretch> out;
+  const std::vector<double> arc = ArcLengths(tube.centerline_N);
+  const std::vector<char>& visible = tube.node_visible;
+  for (std::size_t k = 1; k < visible.size() && k < arc.size(); ++k) {
+    if (visible[k - 1] == 0 || visible[k] != 0) continue;
+    std::size_t next = k;
+    while (next < visible.size() && visible[next] == 0) ++next;
+    if (next < arc.size()) out.push_back({arc[k - 1], arc[next]});
+  }
+  return out;
+}
+
 MotionSet MakeMotions(const TubeScene& scene, const PerceivedTube& tube, const Bin& bin,
                       const PlannerConfig& config) {
   MotionSet set;
   set.motions.push_back(UpMotion(tube, config));
+  if (config.classes == "occluded_joints") {
+    int index = 0;
+    for (const HiddenStretch& joint : OccludedJoints(tube)) {
+      for (const int sign : {+1, -1}) AddEscape(tube, joint, sign, index, bin, config, set);
+      ++index;
+    }
+    return set;
+  }
   std::vector<Crossing> covers;
   for (const Crossing& crossing : scene.crossings) {
     if (crossing.under == tube.id) covers.push_back(crossing);

@@ -20,6 +20,10 @@ struct HiddenStretch {
 HiddenStretch FindHiddenStretch(const PerceivedTube& over, const PerceivedTube& under,
                                 const Crossing& crossing);
 
+/// Where unseen nodes lie between seen ones: the joints of the leao2020 profile that something lies
+/// over, in the order of arc length.
+std::vector<HiddenStretch> OccludedJoints(const PerceivedTube& tube);
+
 /// What a tube could do after it was grasped.
 struct MotionSet {
   std::vector<CandidateMotion> motions;
@@ -33,6 +37,7 @@ struct MotionSet {
 /// not be grasped; later crossings are "escape+2", "escape-2" and so on, left out where an earlier
 /// slide ends within 5 mm (its forbidden section then grows). The slide is shortened so that the
 /// whole tube's bounding box stays clear of the walls; less than a radius is rejected.
+/// With `config.classes` "occluded_joints" the OccludedJoints stand for the crossings, as printed.
 /// Precondition: the crossings' ids are tubes of the scene.
 MotionSet MakeMotions(const TubeScene& scene, const PerceivedTube& tube, const Bin& bin,
                       const PlannerConfig& config);

@@ -14,7 +14,10 @@ namespace tubetwin {
 struct ScanConfig {
   int views = 8;                        ///< Of the default poses, from the first.
   std::string resolution = "1032x772";  ///< Or "2064x1544".
-  bool rescan_all = false;              ///< Later scans of a round look everywhere again.
+  /// One view straight down on the bin's centre from so high over its floor, image along the long
+  /// side, in place of the scan poses; 0: the scan poses.
+  double overhead_m = 0.0;
+  bool rescan_all = false;  ///< Later scans of a round look everywhere again.
   void Visit(ConfigVisitor& v);
 };
 
@@ -41,6 +44,9 @@ struct CycleConfig {
   int attempts_per_tube = 4;  ///< The round ends after this many times the first count, plus ten.
   void Visit(ConfigVisitor& v);
 };
+
+/// Where a round looks from, X_BS.
+std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const Bin& bin);
 
 /// Hears what the cycle does; for recordings, progress and scoring. Default: nothing.
 class CycleObserver {

@@ -1,11 +1,28 @@
 #include "planner/pick_cycle.h"
 
+#include <algorithm>
+
+#include "models/layout.h"
+
 namespace tubetwin {
 
 void ScanConfig::Visit(ConfigVisitor& v) {
   v.Field("views", "how many of the scan poses are used", views, {1, 8});
   v.Choice("resolution", "columns x rows of a scan", resolution, {"1032x772", "2064x1544"});
+  v.Field("overhead_m",
+          "height over the floor of one view on the whole bin instead of the scan poses; 0: these",
+          overhead_m, {0.0, 1.5});
   v.Field("rescan_all", "look everywhere again before every pick", rescan_all);
+}
+
+std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const Bin& bin) {
+  if (config.overhead_m > 0.0) {
+    const RigidTransform X_NS = MakeTransform(RotX(kPi), Vector3(0, 0, config.overhead_m));
+    return {bin.X_BN * X_NS};
+  }
+  std::vector<RigidTransform> poses_BS = DefaultScanPoses(bin);
+  poses_BS.resize(std::min(poses_BS.size(), static_cast<std::size_t>(config.views)));
+  return poses_BS;
 }
 
 void ResolutionConfig::Visit(ConfigVisitor& v) {

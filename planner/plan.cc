@@ -39,6 +39,10 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
           max_candidates, {1, 10000});
   v.Field("max_plans", "ranked plans that are checked for the arm", max_plans, {1, 100});
   v.Field("plans_per_tube", "of these, at most so many for one tube", plans_per_tube, {1, 100});
+  v.Choice("classes",
+           "what a tube's class is counted by: crossings over it, or the occluded_joints of the "
+           "leao2020 profile, which picks no strongly occluded tube and escapes along the joint",
+           classes, {"crossings", "occluded_joints"});
   v.Field("exclude_free", "free tubes stay but may not be chosen", exclude_free);
   v.Field("lift_speed_m_s", "speed of the motions after the grasp", lift_speed_m_s, {0.01, 2.0});
 }

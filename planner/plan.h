@@ -40,6 +40,10 @@ struct PlannerConfig {
   int max_candidates = 12;  ///< Motions that are simulated before it is known whether one will do.
   int max_plans = 8;        ///< Ranked plans that are checked for the arm and returned.
   int plans_per_tube = 3;
+  /// What a tube's class is counted by: "crossings" over it, or the "occluded_joints" of the
+  /// leao2020 profile, whose strongly occluded tubes are not picked and whose escapes follow the
+  /// joint.
+  std::string classes = "crossings";
   bool exclude_free = false;  ///< Free tubes stay but may not be chosen.
   double lift_speed_m_s = 0.25;
   void Visit(ConfigVisitor& v);

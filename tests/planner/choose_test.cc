@@ -71,6 +71,25 @@ TEST_CASE("A free tube is picked upwards without asking the simulator", "[unit]"
   CHECK(result.plans[0].grasp.at_m == Approx(0.20));  // The centre of mass.
 }
 
+TEST_CASE("By occluded joints a strongly occluded tube is no candidate", "[unit]") {
+  FakeEvaluator evaluator;
+  TubeScene scene = Cross();
+  scene.tubes[0].class_paper = TubeClass::kFree;  // Although a tube lies over it.
+  scene.tubes[1].class_paper = TubeClass::kStrong;
+  PlannerConfig config;
+  config.classes = "occluded_joints";
+  const PlanResult result = Plan(scene, config, evaluator);
+  REQUIRE_FALSE(result.plans.empty());
+  for (const PickPlan& plan : result.plans) {
+    CHECK(plan.target == 1);
+    CHECK(plan.target_class == TubeClass::kFree);
+  }
+  config.exclude_free = true;
+  const PlanResult without_free = Plan(scene, config, evaluator);
+  CHECK(without_free.plans.empty());
+  CHECK(AnyReason(without_free, 2, "strongly occluded"));
+}
+
 TEST_CASE("With free tubes excluded the simulator decides, and a jam comes last", "[unit]") {
   FakeEvaluator evaluator;
   PlannerConfig config;

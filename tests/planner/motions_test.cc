@@ -64,6 +64,27 @@ TEST_CASE("A covered tube slides out along its hidden stretch to both sides", "[
   CHECK(back.forbidden_to_m == Approx(0.50));
 }
 
+TEST_CASE("Escapes of the paper's profile follow the occluded joint, not the crossing", "[unit]") {
+  TubeScene scene = Cross();
+  PerceivedTube& tube = scene.tubes[0];
+  PlannerConfig config;
+  config.classes = "occluded_joints";
+  CHECK(MakeMotions(scene, tube, Bin{}, config).motions.size() == 1);  // All of it was seen.
+  const std::size_t middle = tube.node_visible.size() / 2;
+  for (std::size_t k = middle - 1; k <= middle + 1; ++k) tube.node_visible[k] = 0;
+  const std::vector<double> arc = ArcLengths(tube.centerline_N);
+  const std::vector<HiddenStretch> joints = OccludedJoints(tube);
+  REQUIRE(joints.size() == 1);
+  CHECK(joints[0].from_m == Approx(arc[middle - 2]));
+  CHECK(joints[0].to_m == Approx(arc[middle + 2]));
+  Bin wide;
+  wide.size_m = {2.0, 2.0, 0.09};
+  const MotionSet set = MakeMotions(scene, tube, wide, config);
+  REQUIRE(set.motions.size() == 3);
+  const Vector3 slide = Named(set, "escape+").waypoints_N[2] - Vector3(0, 0, 0.05);
+  CHECK(slide.norm() == Approx(joints[0].from_m + 0.0375));
+}
+
 TEST_CASE("An escape stops where the tube's bounding box would leave the safety zone", "[unit]") {
   const TubeScene scene = Cross();
   const MotionSet set = MakeMotions(scene, scene.tubes[0], Bin{}, PlannerConfig{});

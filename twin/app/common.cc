@@ -30,12 +30,12 @@ void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc
   verb.add_flag("-q,--quiet", common.quiet, "Say nothing but errors");
 }
 
-Scenario LoadScenario(const std::vector<std::string>& files, const Common& common) {
+Scenario LoadScenario(const std::vector<std::string>& files, const Common& common,
+                      const std::string& profile) {
   ConfigSource source;
   for (const std::string& file : files) source.AddFile(file);
   for (const std::string& text : common.overrides) source.AddOverride(text);
-  Scenario scenario;
-  source.ReadInto(scenario);
+  Scenario scenario = ReadScenario(source, profile);
   if (common.seed) scenario.seed = *common.seed;
   return scenario;
 }

@@ -37,8 +37,11 @@ struct Common {
 void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc,
                       bool out_required);
 
-/// Scenario from defaults, `files` in order, then --set and --seed.
-Scenario LoadScenario(const std::vector<std::string>& files, const Common& common);
+/// Scenario from the defaults of its profile, `files` in order, then --set and --seed. `profile`:
+/// what
+/// --profile says; empty: what the layers say.
+Scenario LoadScenario(const std::vector<std::string>& files, const Common& common,
+                      const std::string& profile = "");
 
 /// A line to stderr unless quiet.
 void Say(const Common& common, const std::string& line);

@@ -126,8 +126,7 @@ int PerceiveClouds(const PerceiveOptions& given, const Common& common) {
   const Part part = LoadPart(given.part);
   Bin bin;
   if (!given.bin.empty()) bin.size_m = ParseBinSize(given.bin);
-  Scenario scenario = LoadScenario({}, common);
-  if (!given.profile.empty()) scenario.perception.profile = given.profile;
+  const Scenario scenario = LoadScenario({}, common, given.profile);
   StepTimer timer;
   std::vector<OrganizedCloud> views = ReadViews(given, bin, common);
   const double load_ms = timer.Lap();
@@ -164,7 +163,7 @@ void AddPerceiveVerb(CLI::App& app, Common& common) {
   verb->add_option("--part", given->part, "Part name or part file")->required();
   verb->add_option("--bin", given->bin, "Inner size of the bin: long,short,wall in metres");
   verb->add_option("--profile", given->profile, "Pipeline profile")
-      ->check(CLI::IsMember({"best", "leao2020"}));
+      ->check(CLI::IsMember(PipelineProfiles()));
   verb->add_option("--pose", given->pose,
                    "tx,ty,tz,qw,qx,qy,qz of the scanner in the bin, where a file has none; floor: "
                    "fitted to floor and walls (half a turn of the bin stays open)");

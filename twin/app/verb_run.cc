@@ -73,7 +73,7 @@ Scenario RunScenario(const RunOptions& run, const Common& common, std::string& f
   std::vector<std::string> files;
   if (!run.scenario.empty()) files.push_back(run.scenario);
   if (!run.cell.empty()) files.push_back(run.cell);
-  Scenario scenario = LoadScenario(files, common);
+  Scenario scenario = LoadScenario(files, common, run.profile);
   const fs::path parent = fs::path(run.scenario).parent_path();
   folder = parent.empty() ? "." : parent.string();
   if (!run.pile.empty()) scenario.pile.file = fs::absolute(run.pile).string();
@@ -82,7 +82,6 @@ Scenario RunScenario(const RunOptions& run, const Common& common, std::string& f
     const auto size = ParseBinSize(run.bin);
     scenario.bin.size_m.assign(size.begin(), size.end());
   }
-  if (!run.profile.empty()) scenario.profile = run.profile;
   return scenario;
 }
 
@@ -139,7 +138,8 @@ void AddRunVerb(CLI::App& app, Common& common) {
   verb->add_option("--part", run->part, "Part name or part file");
   verb->add_option("--bin", run->bin, "Inner size of the bin: long,short,wall in metres");
   verb->add_option("--cell", run->cell, "Cell file (TOML): which devices");
-  verb->add_option("--profile", run->profile, "Pipeline profile")->check(CLI::IsMember({"best"}));
+  verb->add_option("--profile", run->profile, "Pipeline profile")
+      ->check(CLI::IsMember(PipelineProfiles()));
   verb->add_flag("--video", run->video, "Also draw video.mp4 and picture.png");
   verb->add_option("--require", run->require,
                    "Exit with 1 unless 'KEY>=VALUE' of summary.json holds")

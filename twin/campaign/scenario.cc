@@ -41,7 +41,7 @@ void Scenario::CellChoice::Visit(ConfigVisitor& v) {
 
 void Scenario::Visit(ConfigVisitor& v) {
   v.Field("seed", "seed of everything random in the round", seed, {0, 9007199254740991.0});
-  v.Choice("profile", "pipeline profile", profile, {"best"});
+  v.Choice("profile", "pipeline profile", profile, PipelineProfiles());
   v.Section("pile", "what lies in the bin", pile);
   v.Section("bin", "the bin", bin);
   v.Section("physics", "ranges that the round's physics is drawn from", physics);
@@ -73,6 +73,31 @@ ScanSettings ScenarioScan(const Scenario& scenario, const RoundPhysics& physics)
   settings.noise_scale = physics.depth_noise_scale;
   settings.bias_seed = static_cast<std::uint64_t>(scenario.seed);
   return settings;
+}
+
+const std::vector<std::string>& PipelineProfiles() {
+  static const std::vector<std::string> names = {"best", "leao2020"};
+  return names;
+}
+
+Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
+  Scenario asked;
+  source.ReadInto(asked);
+  Scenario scenario;
+  const std::string& chosen = profile.empty() ? asked.profile : profile;
+  if (chosen == "leao2020") {
+    scenario.perception.profile = "leao2020";
+    PlannerConfig& planner = scenario.planner;
+    planner.classes = "occluded_joints";
+    planner.escape_const_m = 0.03;
+    planner.samples = 1;
+    planner.weight_clearance = planner.weight_confidence = planner.weight_extra = 0.0;
+    planner.min_length_share = planner.min_confidence = 0.0;
+    scenario.resolution.strategy = "plus45";
+  }
+  source.ReadInto(scenario);
+  scenario.profile = chosen;
+  return scenario;
 }
 
 Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m) {

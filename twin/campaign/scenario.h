@@ -63,6 +63,15 @@ RoundPhysics ScenarioPhysics(const Scenario& scenario, const Part& part);
 /// How the scenario's scanner sees, without labels, for a round with that physics.
 ScanSettings ScenarioScan(const Scenario& scenario, const RoundPhysics& physics);
 
+/// Names of the pipeline's profiles.
+const std::vector<std::string>& PipelineProfiles();
+
+/// The scenario of the layers over the defaults of its profile. "leao2020" sets, unless a layer
+/// says otherwise: that modelling, classes by occluded joints, one roll-out per motion with the
+/// paper's cost alone, no ranks of doubt, tilting once by +45 degrees. `profile` overrides what the
+/// layers say; empty: it does not. Throws as ConfigSource::ReadInto.
+Scenario ReadScenario(const ConfigSource& source, const std::string& profile = "");
+
 /// The bin of the scenario for a pile that says `pile_size_m`.
 Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m);
 

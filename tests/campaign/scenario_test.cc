@@ -1,0 +1,44 @@
+#include "twin/campaign/scenario.h"
+
+#include "tests/support/catch.h"
+
+namespace tubetwin {
+namespace {
+
+TEST_CASE("The paper's profile changes defaults, a layer still wins over it", "[unit]") {
+  ConfigSource source;
+  source.AddOverride("profile=leao2020");
+  source.AddOverride("planner.samples=5");
+  const Scenario scenario = ReadScenario(source);
+  CHECK(scenario.profile == "leao2020");
+  CHECK(scenario.perception.profile == "leao2020");
+  CHECK(scenario.planner.classes == "occluded_joints");
+  CHECK(scenario.planner.samples == 5);
+  CHECK(scenario.planner.weight_extra == 0.0);
+  CHECK(scenario.resolution.strategy == "plus45");
+  CHECK(scenario.cycle.tolerance_share == 0.5);
+}
+
+TEST_CASE("The profile of the command line wins, and the default is best", "[unit]") {
+  ConfigSource source;
+  CHECK(ReadScenario(source).perception.profile == "best");
+  source.AddOverride("profile=leao2020");
+  CHECK(ReadScenario(source, "best").perception.profile == "best");
+  CHECK(ReadScenario(source, "best").profile == "best");
+}
+
+TEST_CASE("A resolved scenario of a profile reads back the same", "[unit]") {
+  ConfigSource source;
+  source.AddOverride("profile=leao2020");
+  Scenario scenario = ReadScenario(source);
+  const auto text = [](Scenario& s) {
+    return WriteToml([&s](ConfigVisitor& v) { s.Visit(v); }, false);
+  };
+  ConfigSource again;
+  again.AddText(text(scenario), "resolved");
+  Scenario read = ReadScenario(again);
+  CHECK(text(read) == text(scenario));
+}
+
+}  // namespace
+}  // namespace tubetwin
