@@ -109,22 +109,24 @@ Look LookFromAbove(const Pile& pile, RandomStream stream, const Options& options
   const Matrix3 R_NS = tilt * RotX(kPi);
   const RigidTransform X_NS = MakeTransform(R_NS, aim - kHeight_m * R_NS.col(2));
   const RayScene scene(GeometryOf(pile), X_NS, ScannerSpec{});
-  std::vector<RayHit> hits(static_cast<std::size_t>(camera.width) * camera.height);
-  scene.CastRows(camera, 0, camera.height, hits);
+  HitImage hits(camera);
+  scene.CastRows(camera, 0, camera.height, false, hits);
   OrganizedCloud cloud;
   cloud.width = camera.width;
   cloud.height = camera.height;
   cloud.X_NS = X_NS;
-  cloud.p_SP.assign(hits.size(), InvalidPoint());
-  cloud.label.assign(hits.size(), kLabelNone);
+  const std::size_t pixels = static_cast<std::size_t>(camera.width) * camera.height;
+  cloud.p_SP.assign(pixels, InvalidPoint());
+  cloud.label.assign(pixels, kLabelNone);
   const ScanGeometry geometry = GeometryOf(pile);
-  for (std::size_t i = 0; i < hits.size(); ++i) {
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const int row = static_cast<int>(i / camera.width), column = static_cast<int>(i % camera.width);
     const double noise_m = kSigma_m * options.noise * stream.Normal();
-    if (hits[i].shape < 0) continue;
-    const auto shape = static_cast<std::size_t>(hits[i].shape);
-    const Eigen::Vector3d ray(camera.x(static_cast<int>(i % camera.width)),
-                              camera.y(static_cast<int>(i / camera.width)), 1.0);
-    cloud.p_SP[i] = ((hits[i].z_m + noise_m / ray.norm()) * ray).cast<float>();
+    const std::size_t hit = hits.Index(row, column);
+    if (hits.shape[hit] < 0) continue;
+    const auto shape = static_cast<std::size_t>(hits.shape[hit]);
+    const Eigen::Vector3d ray(camera.x(column), camera.y(row), 1.0);
+    cloud.p_SP[i] = ((hits.z_m[hit] + noise_m / ray.norm()) * ray).cast<float>();
     cloud.label[i] = shape < geometry.capsules.size() ? geometry.capsules[shape].label : kLabelCell;
   }
   out.clouds.push_back(std::move(cloud));
