@@ -201,8 +201,9 @@ Mesh ReadMesh(const std::string& path) {
     Refuse(path, std::string("cannot be read as a mesh: ") + e.what());
   }
   if (scene == nullptr) {
-    std::string why = importer.GetErrorString();
-    std::replace(why.begin(), why.end(), '\n', ' ');
+    // It quotes the file, of any bytes and length.
+    std::string why = std::string(importer.GetErrorString()).substr(0, 120);
+    for (char& c : why) c = std::isprint(static_cast<unsigned char>(c)) != 0 ? c : ' ';
     Refuse(path, "cannot be read as a mesh: " + (why.empty() ? "unknown content" : why));
   }
   const Mesh raw = Gather(*scene, path);

@@ -40,11 +40,10 @@ double Area(const Mesh& mesh) {
 
 TEST_CASE("STL, OBJ and PLY give the same surface with welded vertices", "[unit]") {
   const TemporaryFolder folder;
-  const std::vector<std::pair<std::string, std::string>> files = {{"b.stl", BinaryStl(kTube)},
-                                                                  {"t.STL", TextStl(kTube)},
-                                                                  {"o.obj", Obj(kTube)},
-                                                                  {"t.ply", TextPly(kTube)},
-                                                                  {"b.ply", BinaryPly(kTube)}};
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"b.stl", BinaryStl(kTube)}, {"s.stl", "solid" + BinaryStl(kTube).substr(5)},
+      {"t.STL", TextStl(kTube)},   {"o.obj", Obj(kTube)},
+      {"t.ply", TextPly(kTube)},   {"b.ply", BinaryPly(kTube)}};
   for (const auto& [name, content] : files) {
     INFO(name);
     const Mesh read = ReadMesh(Written(folder, name, content));
@@ -113,7 +112,7 @@ TEST_CASE("Damaged files are read or refused, nothing else", "[unit]") {
 TEST_CASE("A mesh without a plausible size asks for its unit and shows each", "[unit]") {
   Mesh mesh = kTube;
   for (Vector3& v : mesh.vertices) v *= 1000.0;
-  for (const char* said : {"--units", "mm: 0.41", "m: 41", "in: 10", "cm: 4.1"}) {
+  for (const char* said : {"--units", "mm: 0.407", "m: 407", "in: 10.3", "cm: 4.07"}) {
     CheckRefused([&] { ScaleToMetres(mesh, "", "tube.stl", "--units"); }, ErrorKind::kBadData,
                  said);
   }

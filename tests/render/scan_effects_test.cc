@@ -1,4 +1,5 @@
 // Each effect of the scanner alone, the others off, against its own formula.
+// Long file: one effect after another, all on the same helpers.
 
 #include <cmath>
 #include <functional>

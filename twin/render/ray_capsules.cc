@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <embree3/rtcore.h>
+
 namespace tubetwin {
 namespace {
 
@@ -132,7 +134,7 @@ void Occluded(const RTCOccludedFunctionNArguments* args) {
 
 }  // namespace
 
-RTCGeometry NewCapsuleGeometry(RTCDevice device, const std::vector<RayCapsule>& capsules) {
+RTCGeometryTy* NewCapsuleGeometry(RTCDeviceTy* device, const std::vector<RayCapsule>& capsules) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   if (geometry == nullptr) return nullptr;
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(capsules.size()));

@@ -2,9 +2,11 @@
 
 #include <vector>
 
-#include <embree3/rtcore.h>
-
 #include "hw_bridge/base/frames.h"
+
+// Embree's handles, named here so that its headers stay in .cc files.
+struct RTCDeviceTy;
+struct RTCGeometryTy;
 
 namespace tubetwin {
 
@@ -18,6 +20,6 @@ struct RayCapsule {
 /// exact test of all rays of a packet at a time, several times faster than Embree's own round
 /// curves, which take the rays one by one. Hits give the outward normal. `capsules` must outlive
 /// the geometry. Returns null when Embree has no memory.
-RTCGeometry NewCapsuleGeometry(RTCDevice device, const std::vector<RayCapsule>& capsules);
+RTCGeometryTy* NewCapsuleGeometry(RTCDeviceTy* device, const std::vector<RayCapsule>& capsules);
 
 }  // namespace tubetwin
