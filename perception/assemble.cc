@@ -10,6 +10,10 @@ namespace {
 constexpr double kLeastSeen = 0.15;
 constexpr double kLeastSeenRadii = 4.0;
 /// Somewhere a tube shows enough of its roundness (rms sine of the normals; a strip of a third of
+/// Radius by the points, as a share of the part's, from which on a chain is no tube of that part,
+/// and the weight of evidence that this needs. A part file that is 20 % wrong still gets its tubes.
+constexpr double kThinnest = 0.7, kThickest = 1.4;
+constexpr double kRadiusWeight = 20.0;
 /// the upper half has this): a stick's edge or a fold does not.
 constexpr double kRound = 0.3;
 /// Shorter lacks are within the error of two ends.
@@ -110,20 +114,36 @@ class Completion {
   const HiddenSpace& space_;
 };
 
-/// 0..1 from how well the pieces fit, how dear their joints were, how much was seen, and how far
-/// the length is from the part's.
+/// 0..1 from how well the pieces fit, how much better this way to join them is than the next best,
+/// joints that are unlikely in themselves, how much was seen, and how far the length is from the
+/// part's.
 double Confidence(const PerceivedTube& tube, const Chain& chain,
                   const std::vector<Fragment>& fragments, const std::vector<Bridge>& bridges,
                   double tube_length_m) {
   double fit = 1.0, joints = 0.0;
   for (const int e : chain.ends)
     fit = std::min(fit, fragments[static_cast<std::size_t>(e / 2)].fit);
-  for (const int b : chain.bridges) joints += bridges[static_cast<std::size_t>(b)].cost;
+  for (const int b : chain.bridges) {
+    joints += std::max(0.0, bridges[static_cast<std::size_t>(b)].cost);
+  }
+  const double only = 1.0 / (1.0 + std::exp(-chain.margin));
   const double lack = std::abs(tube.length_m - tube_length_m) / tube_length_m;
   const double seen = std::min(1.0, tube.visible_fraction / 0.7);
-  return std::clamp(std::min(1.0, fit / 0.8) * std::exp(-joints / 6.0) * std::exp(-3.0 * lack) *
-                        (0.4 + 0.6 * seen),
+  return std::clamp(std::min(1.0, fit / 0.8) * only * std::exp(-joints / 6.0) *
+                        std::exp(-3.0 * lack) * (0.4 + 0.6 * seen),
                     0.0, 1.0);
+}
+
+/// Whether the points themselves speak for another radius: a cable, a thicker pipe.
+bool HasOtherRadius(const Chain& chain, const std::vector<Fragment>& fragments, double radius_m) {
+  double sum = 0.0, weight = 0.0;
+  for (const int e : chain.ends) {
+    const Fragment& f = fragments[static_cast<std::size_t>(e / 2)];
+    sum += f.radius_weight * f.radius_m;
+    weight += f.radius_weight;
+  }
+  return weight > kRadiusWeight &&
+         (sum < kThinnest * radius_m * weight || sum > kThickest * radius_m * weight);
 }
 
 bool IsRound(const Chain& chain, const std::vector<Fragment>& fragments) {
@@ -157,6 +177,7 @@ std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
     PerceivedTube tube = Concatenate(*chain, fragments, bridges);
     const double seen_m = SeenLength(tube);
     if (seen_m < least_m || !IsRound(*chain, fragments)) continue;
+    if (HasOtherRadius(*chain, fragments, space.radius_m())) continue;
     if (!TouchesBin(tube.centerline_N, bin)) continue;
     const double lack_m = tube_length_m - chain->length_m;
     if (lack_m > kLack_m) Completion(fragments, space).Complete(tube, *chain, lack_m);

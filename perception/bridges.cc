@@ -1,6 +1,7 @@
 #include "perception/bridges.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -34,7 +35,7 @@ constexpr double kClosedEnd = 3.0;
 /// An end with this much of a cap seen hides nothing behind it.
 constexpr double kClosedCap = 0.5;
 /// Costs beyond this are no explanation.
-constexpr double kDearest = 5.0;
+constexpr double kDearest = 8.0;
 /// Ends closer than this (in radii) belong to one tube, whatever they look like: axes of two tubes
 /// stay two radii apart. A sharp bend breaks a fragment and looks like a cap from both sides.
 constexpr double kSameTubeRadii = 1.6;
@@ -82,6 +83,19 @@ Polyline Cubic(const FragmentEnd& a, const FragmentEnd& b, double stiffness) {
                    (3 * t2 - 2 * t3) * b.p_N + (t3 - t2) * m1);
   }
   return line;
+}
+
+/// Straight on from both ends to where the two rays come closest: the way of a tube with a corner.
+/// Empty when the rays part, or come closest beyond the chord's length.
+Polyline Corner(const FragmentEnd& a, const FragmentEnd& b) {
+  const Vector3 w = b.p_N - a.p_N;
+  const double c = a.outward_N.dot(b.outward_N), parallel = 1.0 - c * c;
+  if (parallel < 1e-3) return {};
+  const double s = (w.dot(a.outward_N) - c * w.dot(b.outward_N)) / parallel;
+  const double t = (c * w.dot(a.outward_N) - w.dot(b.outward_N)) / parallel;
+  if (s <= 0.0 || t <= 0.0 || std::max(s, t) > w.norm()) return {};
+  const Vector3 corner = 0.5 * (a.p_N + s * a.outward_N + b.p_N + t * b.outward_N);
+  return Resample({a.p_N, corner, b.p_N}, kNodeStep_m);
 }
 
 /// Energy of a thin beam between two tangents, closed form, over the chord.
@@ -136,8 +150,9 @@ std::optional<Bridge> BestWay(const std::vector<Fragment>& fragments, const Near
                                kClosedEnd * (a.cap + b.cap);
   if (cost_of_shape > kDearest) return std::nullopt;
   std::optional<Bridge> best;
-  for (const double stiffness : {1.0, 0.4}) {
-    Bridge way{i, k, Cubic(a, b, stiffness), 0.0, 0.0};
+  for (Polyline& line : std::array{Cubic(a, b, 1.0), Cubic(a, b, 0.4), Corner(a, b)}) {
+    if (line.empty()) continue;
+    Bridge way{i, k, std::move(line), 0.0, 0.0};
     const auto cost = CostOfPlace(way, lines, space);
     if (!cost) continue;
     way.cost = cost_of_shape + *cost;

@@ -55,6 +55,31 @@ TEST_CASE("A hook is under its partner and over it", "[unit]") {
   CHECK(scene.tubes[0].under == std::vector<int>{20});
   CHECK(scene.tubes[1].over == std::vector<int>{10});
   CHECK(scene.tubes[1].under == std::vector<int>{10});
+  CHECK(scene.tubes[0].hooked == std::vector<int>{20});
+  CHECK(scene.tubes[1].hooked == std::vector<int>{10});
+}
+
+TEST_CASE("A crossing is visible where both tubes are seen, else inferred", "[unit]") {
+  const Polyline low = Resample(AlongX(0.0, kRadius), 0.005);
+  const Polyline high = Resample({{0.05, -0.1, 3 * kRadius}, {0.05, 0.3, 3 * kRadius}}, 0.005);
+  TubeScene scene = SceneOf({low, high});
+  const auto hide = [&](int tube, double from_x, double to_x) {
+    for (std::size_t i = 0; i < low.size(); ++i) {
+      if (tube == 0 && low[i].x() > from_x && low[i].x() < to_x) scene.tubes[0].node_visible[i] = 0;
+      if (tube == 1 && std::abs(high[i].y()) < 0.01) scene.tubes[1].node_visible[i] = 0;
+    }
+    AssignClasses(scene, kRadius);
+    REQUIRE(scene.crossings.size() == 1);
+    return scene.crossings[0].visible;
+  };
+  // What the upper tube itself covers may be unseen: 25 mm across, and half that on either side.
+  CHECK(hide(0, 0.03, 0.07));
+  CHECK(scene.crossings[0].under_to_m - scene.crossings[0].under_from_m ==
+        Approx(2 * kRadius).margin(2 * kSampleTolerance_m));
+  CHECK_FALSE(hide(0, -0.01, 0.07));
+  scene.tubes[0].node_visible.assign(low.size(), 1);
+  CHECK_FALSE(hide(1, 0, 0));
+  CHECK_FALSE(TubeSceneFromJson(JsonView(ToJson(scene), "text")).crossings[0].visible);
 }
 
 TEST_CASE("A tube that another crosses twice is strong", "[unit]") {
