@@ -17,6 +17,19 @@ inline ScanGeometry::Box Plate(double z_m, double tilt_deg = 0.0, float albedo =
           Vector3(1, 1, 0.01), kLabelCell, albedo, gloss};
 }
 
+/// Cosines of a point of a surface with that normal.
+struct Incidence {
+  double camera, projector, mirror;
+  Incidence(const Vector3& p, const Vector3& normal) {
+    const Vector3 to_camera = -p.normalized();
+    const Vector3 to_projector = (ProjectorPose({}).translation() - p).normalized();
+    camera = normal.dot(to_camera);
+    projector = normal.dot(to_projector);
+    mirror = normal.dot((to_camera + to_projector).normalized());
+  }
+};
+inline Vector3 PlateNormal(double tilt_deg) { return RotY(-Radians(tilt_deg)) * Vector3(0, 0, -1); }
+
 inline ScanGeometry::Capsule TubeAlongY(double x_m, double z_m) {
   return {{x_m, -0.5, z_m}, {x_m, 0.5, z_m}, kRadius_m, kTube, 0.8f};
 }
