@@ -26,7 +26,7 @@ struct Leao2020Config {
   double normal_weight_m_per_rad = 0.01;  ///< Not in the paper: one radian counts as so much.
   /// Not in the paper: points per length, along a cylinder over its median, and of a cylinder over
   /// the densest of its segment.
-  double least_density = 0.5;
+  double least_density = 0.35;
   double cylinder_gap_m = 0.010;    ///< Not in the paper: inliers farther on are another piece.
   double least_cylinder_m = 0.010;  ///< Not in the paper: shorter cylinders are dropped.
   double join_distance_m = 0.03;    ///< Set. Between the endpoints of a joint.

@@ -156,15 +156,20 @@ double Mean(const std::vector<double>& values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-enum Method { kBest, kLeao, kPlain, kMethods };
-constexpr const char* kNames[kMethods] = {"best", "leao2020", "plain PCL"};
+enum Method { kBest, kLeao, kLeaoWide, kPlain, kMethods };
+constexpr const char* kNames[kMethods] = {"best", "leao2020", "leao2020, joints to 5 cm, 50 deg",
+                                          "plain PCL"};
 
 TubeScene RunMethod(Method method, const Sample& sample, const Options& o) {
   if (method == kPlain) {
     return PlainPcl(sample.cloud, sample.part, sample.bin, o.threads, o.keep_short);
   }
   PerceptionConfig config;
-  config.profile = kNames[method];
+  config.profile = method == kBest ? "best" : "leao2020";
+  if (method == kLeaoWide) {  // What the method can do without the published limits of joints.
+    config.leao2020.join_distance_m = 0.05;
+    config.leao2020.join_angle_deg = 50.0;
+  }
   if (o.keep_short) config.leao2020.least_share_rigid = config.leao2020.least_share_hose = 0.0;
   return Perceive({sample.cloud}, sample.part, sample.bin, config, {o.threads});
 }
