@@ -190,10 +190,6 @@ class Reader : public ConfigVisitor {
 
 }  // namespace
 
-struct ConfigSource::Impl {
-  Node::Table layers;  ///< Merged so far.
-};
-
 ConfigSource::ConfigSource() : impl_(std::make_unique<Impl>()) {}
 ConfigSource::~ConfigSource() = default;
 ConfigSource::ConfigSource(ConfigSource&&) noexcept = default;

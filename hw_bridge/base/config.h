@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tubetwin {
@@ -81,6 +82,23 @@ class ConfigSource {
   }
   void Read(const std::function<void(ConfigVisitor&)>& visit) const;
 
+  /// The tables of `[[key]]`, taken out of the layers, each a source of its own; none when the key
+  /// is absent. Throws Error(kConfig) when it is no list of tables.
+  std::vector<ConfigSource> TakeTables(const std::string& key);
+  /// The table `key = {a.b = 1}`, taken out; a quoted "a.b" means the same. Empty when absent.
+  /// Throws Error(kConfig) when it is no table.
+  ConfigSource TakeTable(const std::string& key);
+  /// Moves a top-level key to `path` ("pile.part") of another source with the place that messages
+  /// name; nothing when absent. Throws Error(kConfig) when `to` has that path already.
+  void MoveKey(const std::string& key, ConfigSource& to, const std::string& path);
+
+  /// The grid that lists span: one source per combination, the last key fastest. A list of values
+  /// where the field takes one, or a list of lists where it takes a list, spans; all else is kept.
+  std::vector<ConfigSource> ExpandLists(const std::function<void(ConfigVisitor&)>& visit) const;
+
+  /// Every key ("a.b") with its value as a person writes it, tables in order.
+  std::vector<std::pair<std::string, std::string>> Texts() const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
@@ -88,6 +106,9 @@ class ConfigSource {
 
 /// The config as TOML text, every key with its value; with `with_docs` each key under its comment.
 std::string WriteToml(const std::function<void(ConfigVisitor&)>& visit, bool with_docs);
+
+/// The config as JSON text, nested as its tables are.
+std::string WriteConfigJson(const std::function<void(ConfigVisitor&)>& visit);
 
 /// JSON Schema (draft 2020-12) of the config: type, allowed values, default and doc of every key.
 std::string WriteConfigSchema(const std::function<void(ConfigVisitor&)>& visit);

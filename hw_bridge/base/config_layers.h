@@ -5,6 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "hw_bridge/base/config.h"
+
 namespace tubetwin::config_internal {
 
 /// One value of a layer with the place it came from. Own type because toml++ forgets the place of
@@ -54,3 +56,11 @@ inline std::string Below(const std::string& path, const std::string& key) {
 bool IsBareKey(const std::string& key);
 
 }  // namespace tubetwin::config_internal
+
+namespace tubetwin {
+
+struct ConfigSource::Impl {
+  config_internal::Node::Table layers;  ///< Merged so far.
+};
+
+}  // namespace tubetwin

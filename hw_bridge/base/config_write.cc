@@ -129,12 +129,24 @@ Json Schema(const Entry& entry) {
   return out;
 }
 
+Json Values(const Entry& section) {
+  Json out = Json::object();
+  for (const Entry& entry : section.children) {
+    out[entry.key] = entry.type == Entry::Type::kSection ? Values(entry) : entry.value;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string WriteToml(const std::function<void(ConfigVisitor&)>& visit, bool with_docs) {
   std::ostringstream out;
   WriteEntries(DescribeFields(visit), "", with_docs, out);
   return std::move(out).str();
+}
+
+std::string WriteConfigJson(const std::function<void(ConfigVisitor&)>& visit) {
+  return Values(DescribeFields(visit)).dump();
 }
 
 std::string WriteConfigSchema(const std::function<void(ConfigVisitor&)>& visit) {

@@ -106,7 +106,7 @@ bool IsAllowedEverywhere(const std::string& include) {
   static const std::set<std::string> kPosix = {
       "dirent.h",   "dlfcn.h",        "fcntl.h",       "poll.h",     "sched.h",
       "signal.h",   "spawn.h",        "sys/mman.h",    "sys/stat.h", "sys/types.h",
-      "sys/wait.h", "sys/resource.h", "sys/utsname.h", "unistd.h"};
+      "sys/file.h", "sys/prctl.h", "sys/wait.h", "sys/resource.h", "sys/utsname.h", "unistd.h"};
   return kPosix.count(include) > 0;
 }
 

@@ -46,12 +46,14 @@ void Say(const Common& common, const std::string& line) {
 
 ProgressLine::ProgressLine(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) == 1) {}
 
-ProgressLine::~ProgressLine() {
+ProgressLine::~ProgressLine() { Clear(); }
+
+void ProgressLine::Clear() {
   if (enabled_) std::fprintf(stderr, "\r\033[K");
 }
 
 void ProgressLine::Show(const std::string& text) {
-  if (enabled_) std::fprintf(stderr, "\r\033[K%s", text.substr(0, 110).c_str());
+  if (enabled_) std::fprintf(stderr, "\r\033[K%s", text.substr(0, 120).c_str());
 }
 
 TubeScene SceneOfPile(const Pile& pile) {

@@ -53,6 +53,8 @@ class ProgressLine {
   explicit ProgressLine(bool enabled);
   ~ProgressLine();
   void Show(const std::string& text);
+  void Clear();  ///< Before something else is written to stderr.
+  bool enabled() const { return enabled_; }
 
  private:
   bool enabled_;
@@ -68,6 +70,7 @@ void AddScanVerb(CLI::App& app, Common& common);
 void AddPerceiveVerb(CLI::App& app, Common& common);
 void AddPlanVerb(CLI::App& app, Common& common);
 void AddEvaluateVerb(CLI::App& app, Common& common);
+void AddCampaignVerb(CLI::App& app, Common& common);
 void AddRenderVerb(CLI::App& app, Common& common);
 void AddPartVerb(CLI::App& app, Common& common);
 void AddDoctorVerb(CLI::App& app, Common& common);

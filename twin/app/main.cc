@@ -30,6 +30,7 @@ int Run(int argc, char** argv) {
   AddPerceiveVerb(app, common);
   AddPlanVerb(app, common);
   AddEvaluateVerb(app, common);
+  AddCampaignVerb(app, common);
   AddRenderVerb(app, common);
   AddPartVerb(app, common);
   AddDoctorVerb(app, common);

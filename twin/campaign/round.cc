@@ -1,5 +1,6 @@
 #include "twin/campaign/round.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -61,7 +62,8 @@ class RoundRecorder : public CycleObserver {
     const double now = WallNow();
     timings.push_back(RoundScorer::TimingRow(report, 0, now - attempt_began_));
     attempt_began_ = now;
-    if (!rows.back()["success"].get<bool>()) SaveFailure();
+    attempt_end_frames.push_back(static_cast<int>(recording_.frames.size()));
+    if (options_.keep != RoundKeep::kRows && !rows.back()["success"].get<bool>()) SaveFailure();
     recording_.overlays.push_back({});  // What was seen is stale now.
   }
 
@@ -70,7 +72,13 @@ class RoundRecorder : public CycleObserver {
   }
   const Recording& recording() const { return recording_; }
 
+  bool AnyFailure() const {
+    return std::any_of(rows.begin(), rows.end(),
+                       [](const Json& row) { return row["success"] != true; });
+  }
+
   std::vector<Json> rows, timings;
+  std::vector<int> attempt_end_frames;
 
  private:
   void AddFrame() {
@@ -86,8 +94,7 @@ class RoundRecorder : public CycleObserver {
   }
 
   void SaveFailure() {
-    char name[32];
-    std::snprintf(name, sizeof name, "attempt_%03d", static_cast<int>(rows.size()));
+    const std::string name = FailureFolderName(static_cast<int>(rows.size()) - 1);
     const std::string folder = (fs::path(options_.out_folder) / "failures" / name).string();
     WriteJsonFile(rows.back(), folder + "/attempt.json");
     SavePile(Truth(twin_).CurrentPile(), folder + "/state.pile.json");
@@ -131,7 +138,25 @@ Pile StartPile(const Scenario& scenario, const Pile& asked, const RoundPhysics& 
   return settled.pile;  // Escaped tubes are part of the truth: they will not be placed.
 }
 
+/// Recording, film and report.
+void WriteRecord(const Json& summary, const RoundRecorder& recorder, const RoundOptions& options) {
+  const fs::path out(options.out_folder);
+  WriteRecording(recorder.recording(), (out / "recording.bin").string());
+  if (options.video) {
+    if (options.progress) options.progress("drawing the film");
+    RenderPicture(recorder.recording(), 0, (out / "picture.png").string());
+    RenderFilm(recorder.recording(), (out / "video.mp4").string(), 1, options.parallelism);
+  }
+  WriteReport(summary, recorder.rows, options.out_folder);
+}
+
 }  // namespace
+
+std::string FailureFolderName(int row) {
+  char name[32];
+  std::snprintf(name, sizeof name, "attempt_%03d", row + 1);
+  return name;
+}
 
 RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   const double began = WallNow();
@@ -169,17 +194,17 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   WriteJsonLines(recorder.rows, (out / "picks.jsonl").string());
   WriteJsonLines(recorder.timings, (out / "timings.jsonl").string());
   WriteJsonFile(result.summary, (out / "summary.json").string());
-  WriteRecording(recorder.recording(), (out / "recording.bin").string());
   const double cycle_wall_s = WallNow() - began;
-  if (options.video) {
-    if (options.progress) options.progress("drawing the film");
-    RenderPicture(recorder.recording(), 0, (out / "picture.png").string());
-    RenderFilm(recorder.recording(), (out / "video.mp4").string(), 1, options.parallelism);
+  if (options.keep == RoundKeep::kAll ||
+      (options.keep == RoundKeep::kFailures && recorder.AnyFailure())) {
+    WriteRecord(result.summary, recorder, options);
   }
-  WriteReport(result.summary, recorder.rows, options.out_folder);
   WriteJsonFile(Manifest(scenario, resolved, options.program_version, options.parallelism.threads,
                          cycle_wall_s),
                 (out / "manifest.json").string());
+  result.rows = std::move(recorder.rows);
+  result.timings = std::move(recorder.timings);
+  result.attempt_end_frames = std::move(recorder.attempt_end_frames);
   return result;
 }
 

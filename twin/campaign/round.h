@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "hw_bridge/base/json.h"
 #include "hw_bridge/base/parallel.h"
@@ -9,11 +10,19 @@
 
 namespace tubetwin {
 
+/// What a round leaves in its folder besides configuration, start, rows and summary.
+enum class RoundKeep {
+  kAll,       ///< Recording and report, state and clouds of failed attempts.
+  kFailures,  ///< The same, but nothing when no attempt failed.
+  kRows,      ///< Nothing.
+};
+
 struct RoundOptions {
   std::string out_folder;
   std::string scenario_folder = ".";  ///< What relative file names in the scenario refer to.
   Parallelism parallelism = Parallelism::All();
-  bool video = false;
+  RoundKeep keep = RoundKeep::kAll;
+  bool video = false;  ///< With kAll only.
   bool force = false;  ///< Replace rows of another configuration.
   std::string program_version;
   std::function<void(const std::string&)>
@@ -21,11 +30,16 @@ struct RoundOptions {
   std::function<bool()> stop_requested;
 };
 
-/// What a round came to: the content of summary.json.
+/// What a round came to.
 struct RoundResult {
-  Json summary;
+  Json summary;                         ///< Content of summary.json.
+  std::vector<Json> rows, timings;      ///< Of picks.jsonl and timings.jsonl.
+  std::vector<int> attempt_end_frames;  ///< How many frames were recorded when each row was made.
   bool interrupted = false;
 };
+
+/// Folder of a failed attempt below failures/; `row` counts rows of picks.jsonl from 0.
+std::string FailureFolderName(int row);
 
 /// Runs one whole round in the twin and writes the result folder (design.md 7): wires cell, cycle
 /// and evaluator, and alone scores by truth. Same scenario, same bytes in every file but

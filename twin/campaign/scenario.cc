@@ -116,17 +116,19 @@ Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size
   return bin;
 }
 
+Pile AskedPile(const Scenario& scenario, const std::string& folder) {
+  std::filesystem::path file(scenario.pile.file);
+  if (file.is_relative()) file = std::filesystem::path(folder) / file;
+  PileOverrides overrides;
+  if (!scenario.pile.part.empty()) overrides.part = scenario.pile.part;
+  if (!scenario.bin.size_m.empty()) overrides.bin_size_m = ScenarioBin(scenario, {}).size_m;
+  Pile pile = LoadPile(file.string(), overrides);
+  pile.bin = ScenarioBin(scenario, pile.bin.size_m);
+  return pile;
+}
+
 Pile ScenarioPile(const Scenario& scenario, const std::string& folder) {
-  if (!scenario.pile.file.empty()) {
-    std::filesystem::path file(scenario.pile.file);
-    if (file.is_relative()) file = std::filesystem::path(folder) / file;
-    PileOverrides overrides;
-    if (!scenario.pile.part.empty()) overrides.part = scenario.pile.part;
-    if (!scenario.bin.size_m.empty()) overrides.bin_size_m = ScenarioBin(scenario, {}).size_m;
-    Pile pile = LoadPile(file.string(), overrides);
-    pile.bin = ScenarioBin(scenario, pile.bin.size_m);
-    return pile;
-  }
+  if (!scenario.pile.file.empty()) return AskedPile(scenario, folder);
   const Part part = LoadPart(scenario.pile.part.empty() ? "pvc_a" : scenario.pile.part);
   const Bin bin = ScenarioBin(scenario, Bin().size_m);
   const RoundPhysics physics = ScenarioPhysics(scenario, part);

@@ -75,6 +75,10 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile = "
 /// The bin of the scenario for a pile that says `pile_size_m`.
 Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m);
 
+/// The pile of `scenario.pile.file` as it is, with the scenario's part and bin. Precondition: a
+/// file is given. Throws as LoadPile does.
+Pile AskedPile(const Scenario& scenario, const std::string& folder);
+
 /// The pile that the scenario asks for, not yet settled when it comes from a file; generated ones
 /// are. `folder`: what relative file names refer to. Throws as LoadPile and GeneratePile do, and
 /// Error(kInternal) when no settled pile could be generated.

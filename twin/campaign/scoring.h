@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "hw_bridge/base/json.h"
@@ -34,5 +35,14 @@ class RoundScorer {
   int dropped_ = 0;
   std::vector<Json> rows_;
 };
+
+/// Row of picks.jsonl for a round whose process left none: outcome "fault", no success, every other
+/// field null. It stands for the round's first attempt.
+Json FaultRow(const std::string& reason);
+/// Its row of timings.jsonl.
+Json FaultTimingRow(double wall_s);
+/// Its summary: nothing placed, end_reason "crashed".
+Json FaultSummary(int tubes_start, const std::string& reason);
+bool IsFaultSummary(const Json& summary);
 
 }  // namespace tubetwin

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/math/distributions/normal.hpp>
+
 #include "hw_bridge/base/error.h"
 
 namespace tubetwin {
@@ -10,7 +12,7 @@ namespace tubetwin {
 ShareInterval Wilson95(int k, int n) {
   TT_CHECK(0 <= k && k <= n);
   if (n == 0) return {};
-  constexpr double z = 1.959963984540054;  // 97.5 % quantile of the normal distribution.
+  static const double z = boost::math::quantile(boost::math::normal(), 0.975);
   const double share = static_cast<double>(k) / n;
   const double scale = 1.0 + z * z / n;
   const double centre = (share + z * z / (2.0 * n)) / scale;

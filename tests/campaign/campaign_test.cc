@@ -1,0 +1,152 @@
+#include "twin/campaign/campaign.h"
+
+#include <fstream>
+
+#include "hw_bridge/base/error.h"
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+#include "twin/campaign/kept_rounds.h"
+
+namespace tubetwin {
+namespace {
+
+using Catch::Matchers::Contains;
+
+Campaign Load(const TemporaryFolder& folder, const std::string& text,
+              const std::vector<std::string>& overrides = {}) {
+  std::ofstream(folder / "C.toml") << text;
+  return LoadCampaign(folder / "C.toml", overrides, std::nullopt);
+}
+
+void CheckRefused(const std::string& text, ErrorKind kind, const std::string& said) {
+  INFO(text);
+  const TemporaryFolder folder;
+  try {
+    Load(folder, text);
+    FAIL("not refused");
+  } catch (const Error& e) {
+    CHECK(e.kind() == kind);
+    CHECK_THAT(e.what(), Contains(said));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a campaign file gives arms of part, count, profile and set") {
+  const TemporaryFolder folder;
+  const Campaign campaign = Load(folder, R"(
+seed = 5
+rounds = 40
+[[arm]]
+part = "pvc_a"
+count = 7
+profile = "best"
+[[arm]]
+name = "hoses"
+part = "hose_b"
+count = 9
+set = {planner.exclude_free = true, "pile.arrangement" = "threaded", physics.randomize = false}
+)");
+  CHECK(campaign.seed == 5);
+  CHECK(campaign.rounds == 40);
+  REQUIRE(campaign.arms.size() == 2);
+  CHECK(campaign.arms[0].name == "pvc_a x 7");
+  CHECK(campaign.arms[0].part.name == "pvc_a");
+  CHECK(campaign.arms[1].name == "hoses");
+  CHECK(campaign.arms[1].tubes == 9);
+  CHECK(campaign.arms[1].scenario.planner.exclude_free);
+  CHECK(campaign.arms[1].scenario.pile.arrangement == "threaded");
+  CHECK_FALSE(campaign.arms[1].scenario.physics.randomize);
+}
+
+TEST_CASE("lists make an arm of each combination, named by what differs") {
+  const TemporaryFolder folder;
+  const Campaign campaign = Load(folder, R"(
+[[arm]]
+part = ["pvc_a", "hose_b"]
+count = [3, 7]
+set = {resolution.strategy = ["plus45", "plus45_minus45"], bin.size_m = [0.77, 0.58, 0.09]}
+)");
+  REQUIRE(campaign.arms.size() == 8);
+  CHECK(campaign.arms[0].scenario.bin.size_m == std::vector<double>{0.77, 0.58, 0.09});
+  int hoses = 0, sevens = 0, both = 0;
+  for (const CampaignArm& arm : campaign.arms) {
+    hoses += arm.part.name == "hose_b" ? 1 : 0;
+    sevens += arm.tubes == 7 ? 1 : 0;
+    both += arm.scenario.resolution.strategy == "plus45_minus45" ? 1 : 0;
+    CHECK_THAT(arm.name, Contains("resolution.strategy=plus45"));
+  }
+  CHECK(hoses == 4);
+  CHECK(sevens == 4);
+  CHECK(both == 4);
+  const Campaign bins = Load(folder, R"(
+[[arm]]
+set = {bin.size_m = [[0.77, 0.58, 0.09], [0.80, 0.60, 0.20]]}
+)");
+  REQUIRE(bins.arms.size() == 2);
+  CHECK(bins.arms[1].scenario.bin.size_m[2] == 0.20);
+}
+
+TEST_CASE("overrides reach the campaign or every arm") {
+  const TemporaryFolder folder;
+  const Campaign campaign = Load(folder, "rounds = 3\n[[arm]]\ncount = 2\n[[arm]]\ncount = 3\n",
+                                 {"rounds=2", "keep.films=false", "planner.exclude_free=true"});
+  CHECK(campaign.rounds == 2);
+  CHECK_FALSE(campaign.keep.films);
+  for (const CampaignArm& arm : campaign.arms) CHECK(arm.scenario.planner.exclude_free);
+}
+
+TEST_CASE("a bad campaign file is refused with its place and what is allowed") {
+  CheckRefused("rounds = 0\n[[arm]]\n", ErrorKind::kConfig, "C.toml:1:10: rounds: is 0, allowed");
+  CheckRefused("rounds = 2\n", ErrorKind::kConfig, "no [[arm]] table");
+  CheckRefused("round = 2\n[[arm]]\n", ErrorKind::kConfig, "nearest known is 'rounds'");
+  CheckRefused("[[arm]]\nprt = \"pvc_a\"\n", ErrorKind::kConfig, "nearest known is 'part'");
+  CheckRefused("[[arm]]\npart = \"pvc_b\"\n", ErrorKind::kMissing, "pvc_a");
+  CheckRefused("[[arm]]\ncount = 0\n", ErrorKind::kConfig, "C.toml:2:9: pile.count: is 0");
+  CheckRefused("[[arm]]\ncount = [7, \"x\"]\n", ErrorKind::kConfig, "C.toml:2:13");
+  CheckRefused("[[arm]]\ncount = []\n", ErrorKind::kConfig, "empty list");
+  CheckRefused("[[arm]]\nprofile = \"bst\"\n", ErrorKind::kConfig, "best");
+  CheckRefused("[[arm]]\nset = {planer.exclude_free = true}\n", ErrorKind::kConfig, "planer");
+  CheckRefused("[[arm]]\nset = {seed = 4}\n", ErrorKind::kConfig, "give it at the top");
+  CheckRefused("[[arm]]\nset = 4\n", ErrorKind::kConfig, "a table");
+  CheckRefused("[[arm]]\ncount = 7\nset = {pile.count = 8}\n", ErrorKind::kConfig, "given twice");
+  CheckRefused("[[arm]]\n[[arm]]\n", ErrorKind::kConfig, "two arms are called 'pvc_a x 7'");
+  CheckRefused("arm = 3\n", ErrorKind::kConfig, "[[arm]]");
+  CheckRefused("[[arm]]\nset = {pile.file = \"no.csv\"}\n", ErrorKind::kMissing, "no.csv");
+}
+
+TEST_CASE("seeds of rounds are the arms' in common, differ and depend on the campaign's seed") {
+  CHECK(RoundSeed(1, 0) == RoundSeed(1, 0));
+  CHECK(RoundSeed(1, 0) != RoundSeed(1, 1));
+  CHECK(RoundSeed(1, 1) != RoundSeed(2, 1));
+  CHECK(RoundSeed(1, 0) != RoundSeed(2, 0));
+  for (int round = 0; round < 100; ++round) {
+    CHECK(RoundSeed(3, round) >= 0);
+    CHECK(RoundSeed(3, round) <= 9007199254740991);
+  }
+}
+
+TEST_CASE("the identity holds what rows depend on and nothing of what is kept") {
+  const TemporaryFolder folder;
+  const std::string text = "[[arm]]\npart = \"pvc_a\"\n";
+  const Json one = CampaignIdentity(Load(folder, text), "1");
+  CHECK(CampaignIdentity(Load(folder, "[keep]\nsample = 0.5\n" + text), "1") == one);
+  CHECK_THAT(*FirstDifference(CampaignIdentity(Load(folder, text + "count = 8\n"), "1"), one),
+             Contains("arms.0.name") || Contains("arms.0.tubes is 8 against 7"));
+  CHECK_THAT(*FirstDifference(CampaignIdentity(Load(folder, text), "2"), one),
+             Contains("program is \"2\" against \"1\""));
+}
+
+TEST_CASE("the sample is a share of the rounds, the same whoever asks") {
+  Campaign campaign;
+  campaign.keep.sample = 0.1;
+  int sampled = 0;
+  for (int round = 0; round < 2000; ++round) sampled += IsSampled(campaign, round) ? 1 : 0;
+  CHECK(sampled == Approx(200).margin(60));  // Over four sigma.
+  campaign.keep.sample = 0.0;
+  CHECK_FALSE(IsSampled(campaign, 0));
+  campaign.keep.sample = 1.0;
+  CHECK(IsSampled(campaign, 0));
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,230 @@
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include "hw_bridge/base/error.h"
+#include "twin/app/common.h"
+#include "twin/campaign/campaign.h"
+#include "twin/campaign/campaign_status.h"
+#include "twin/campaign/campaign_summary.h"
+#include "twin/campaign/compare.h"
+#include "twin/campaign/kept_rounds.h"
+#include "twin/campaign/merge.h"
+#include "twin/campaign/run_campaign.h"
+
+namespace tubetwin {
+namespace {
+
+volatile std::sig_atomic_t g_stop = 0;  // Signal handlers may touch nothing else.
+
+struct CampaignOptions {
+  std::string file, shard, limit_time;
+  std::optional<int> shards;
+  int jobs = 0;
+  double grace_s = 20.0;
+  std::vector<std::string> folders;
+};
+
+/// "90", "90s", "30m", "8h" in seconds.
+double ParseDuration(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const std::string unit(end);
+  const double scale = unit.empty() || unit == "s" ? 1.0
+                       : unit == "m"               ? 60.0
+                       : unit == "h"               ? 3600.0
+                                                   : 0.0;
+  if (end == text.c_str() || scale == 0.0 || !(value > 0.0)) {
+    throw Error(ErrorKind::kUsage,
+                "--limit-time '" + text + "': a time is needed, for example 90s, 30m or 8h");
+  }
+  return value * scale;
+}
+
+/// Tells of a running shard: in place on a terminal, else a line now and then.
+class Teller {
+ public:
+  explicit Teller(const Common& common) : common_(common), line_(!common.quiet) {}
+  void Progress(const ShardProgress& progress) {
+    line_.Show(ProgressText(progress));
+    if (line_.enabled() || progress.done == told_) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (told_ >= 0 && now - told_at_ < std::chrono::seconds(30)) return;
+    Say(common_, ProgressText(progress));
+    told_ = progress.done;
+    told_at_ = now;
+  }
+  void Notice(const std::string& text) {
+    line_.Clear();
+    std::fprintf(stderr, "tubetwin: %s\n", text.c_str());
+  }
+
+ private:
+  const Common& common_;
+  ProgressLine line_;
+  int told_ = -1;
+  std::chrono::steady_clock::time_point told_at_;
+};
+
+int RunVerb(const CampaignOptions& given, const Common& common) {
+  CampaignRunOptions options;
+  options.shard = ChooseShard(given.shard, given.shards,
+                              [](const char* name) -> const char* { return std::getenv(name); });
+  if (!given.limit_time.empty()) options.limit_s = ParseDuration(given.limit_time);
+  const Campaign campaign = LoadCampaign(given.file, common.overrides, common.seed);
+  options.out_folder = common.out;
+  options.jobs = given.jobs > 0 ? given.jobs : Parallelism::All().threads;
+  options.grace_s = given.grace_s;
+  options.program_version = TUBETWIN_VERSION;
+  std::signal(SIGTERM, [](int) { g_stop = 1; });
+  std::signal(SIGINT, [](int) { g_stop = 1; });
+  options.stop_requested = [] { return g_stop != 0; };
+  CampaignRun run;
+  {
+    Teller teller(common);
+    options.progress = [&](const ShardProgress& progress) { teller.Progress(progress); };
+    options.notice = [&](const std::string& text) { teller.Notice(text); };
+    const CampaignRoundOptions round{common.out, Parallelism{std::max(1, common.threads)},
+                                     TUBETWIN_VERSION};
+    run = RunCampaign(
+        campaign, [&](const RoundTask& task) { return RunCampaignRound(campaign, task, round); },
+        options);
+  }
+  Say(common, ProgressText(run.progress));
+  if (run.end != CampaignEnd::kDone) {
+    std::fprintf(stderr, "tubetwin: %s with %d of %d rounds saved; run again to go on\n",
+                 run.end == CampaignEnd::kStopped ? "stopped" : "the time is up", run.progress.done,
+                 run.progress.total);
+    return static_cast<int>(ErrorKind::kInterrupted);
+  }
+  if (options.shard.count > 1) return 0;
+  const CampaignResult result =
+      ReadShards({common.out});  // The whole campaign: no merge is needed.
+  const Json summary = WriteMerged(result, common.out);
+  std::printf("%s", common.json ? (summary.dump(2) + "\n").c_str()
+                                : SummaryText(summary, CampaignManifest(result)).c_str());
+  return 0;
+}
+
+int StatusVerb(const CampaignOptions& given, const Common& common) {
+  const CampaignStatus status = ReadCampaignStatus(given.folders.front());
+  std::printf("%s", common.json ? (ToJson(status).dump(2) + "\n").c_str() : ToText(status).c_str());
+  return 0;
+}
+
+int MergeVerb(const CampaignOptions& given, const Common& common) {
+  const CampaignResult result = ReadShards(given.folders);
+  const Json summary = WriteMerged(result, common.out);
+  std::printf("%s", common.json ? (summary.dump(2) + "\n").c_str()
+                                : SummaryText(summary, CampaignManifest(result)).c_str());
+  return 0;
+}
+
+int CompareVerb(const CampaignOptions& given, const Common& common) {
+  std::vector<CampaignResult> results;
+  for (const std::string& folder : given.folders) results.push_back(ReadCampaignResult(folder));
+  const std::vector<ArmPair> pairs =
+      results.size() == 1 ? PairArmsWithin(results[0]) : PairArms(results[0], results[1]);
+  const Json comparison = CompareArms(pairs);
+  if (!common.out.empty()) WriteJsonFile(comparison, common.out);
+  std::printf("%s",
+              common.json ? (comparison.dump(2) + "\n").c_str() : CompareText(comparison).c_str());
+  return 0;
+}
+
+void AddRun(CLI::App& campaign, Common& common) {
+  auto given = std::make_shared<CampaignOptions>();
+  CLI::App* run = campaign.add_subcommand(
+      "run",
+      "Example: tubetwin campaign run C.toml --out out/c, where C.toml reads\n\n"
+      "  seed = 1\n  rounds = 40\n  [[arm]]\n  part = \"pvc_a\"\n  count = 7\n"
+      "  [[arm]]\n  part = \"hose_b\"\n  count = [7, 10]\n"
+      "  set = {resolution.strategy = [\"plus45\", \"plus45_minus45\"]}\n\n"
+      "Runs every round of every arm (a list makes an arm of each value; round r has the same seed "
+      "in all arms), each in a process of its own. Killed at any moment it loses the rounds in "
+      "hand; the same command goes on where it was. --set, --seed and --shard/--shards as said "
+      "below; --threads is per round (default 1). A shard of several is merged with `campaign "
+      "merge`; the whole campaign merges itself.");
+  run->add_option("file", given->file, "Campaign file (TOML)")->required()->type_name("C.toml");
+  run->add_option("--jobs", given->jobs, "Rounds at a time; default: all cores")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  run->add_option("--shard", given->shard,
+                  "Run rounds r with r mod n = i only; also from SLURM_ARRAY_TASK_ID/COUNT")
+      ->type_name("I/N");
+  run->add_option("--shards", given->shards,
+                  "Number of shards when JOB_COMPLETION_INDEX (from 0) or PARALLEL_SEQ (from 1) "
+                  "says which one")
+      ->type_name("N");
+  run->add_option("--limit-time", given->limit_time,
+                  "Begin no round after that time (90s, 30m, 8h), then exit with 75")
+      ->type_name("TIME");
+  run->add_option("--grace", given->grace_s,
+                  "Seconds that rounds in hand have to end after SIGTERM or SIGINT; default 20")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->type_name("S");
+  AddCommonOptions(*run, common, "Folder of the campaign", true);
+  run->callback(
+      [given, &common] { common.action = [given, &common] { return RunVerb(*given, common); }; });
+}
+
+void AddReaders(CLI::App& campaign, Common& common) {
+  auto seen = std::make_shared<CampaignOptions>();
+  CLI::App* status = campaign.add_subcommand(
+      "status", "Example: tubetwin campaign status out/c\n\nRounds done, rate and time left.");
+  status->add_option("folder", seen->folders, "Folder of the campaign")
+      ->required()
+      ->expected(1)
+      ->type_name("DIR");
+  AddCommonOptions(*status, common, "", false);
+  status->callback(
+      [seen, &common] { common.action = [seen, &common] { return StatusVerb(*seen, common); }; });
+
+  auto merged = std::make_shared<CampaignOptions>();
+  CLI::App* merge = campaign.add_subcommand(
+      "merge",
+      "Example: tubetwin campaign merge out/shard-* --out out/merged\n\n"
+      "Makes one result of all shards of a campaign, in whatever folders and order: picks.jsonl, "
+      "timings.jsonl, rounds.jsonl, summary.json. The bytes are those of one uninterrupted run. "
+      "Missing and doubled rounds are errors.");
+  merge->add_option("folders", merged->folders, "Folders with shards")
+      ->required()
+      ->type_name("DIR...");
+  AddCommonOptions(*merge, common, "Folder of the result", true);
+  merge->callback([merged, &common] {
+    common.action = [merged, &common] { return MergeVerb(*merged, common); };
+  });
+
+  auto pair = std::make_shared<CampaignOptions>();
+  CLI::App* compare = campaign.add_subcommand(
+      "compare",
+      "Example: tubetwin campaign compare out/plus45 out/plus45_minus45\n\n"
+      "Compares two campaigns of one seed arm by arm, or all arms within one, round by round with "
+      "the same seed: exact McNemar tests with Holm's adjustment, differences with bootstrap "
+      "intervals.");
+  compare->add_option("folders", pair->folders, "One or two campaigns")
+      ->required()
+      ->expected(1, 2)
+      ->type_name("A [B]");
+  AddCommonOptions(*compare, common, "Also write the comparison as JSON", false);
+  compare->callback(
+      [pair, &common] { common.action = [pair, &common] { return CompareVerb(*pair, common); }; });
+}
+
+}  // namespace
+
+void AddCampaignVerb(CLI::App& app, Common& common) {
+  CLI::App* campaign = app.add_subcommand(
+      "campaign",
+      "Example: tubetwin campaign run C.toml --out out/c\n\n"
+      "Many rounds: on one machine or many, interrupted and resumed, merged and compared.");
+  campaign->require_subcommand(1);
+  AddRun(*campaign, common);
+  AddReaders(*campaign, common);
+}
+
+}  // namespace tubetwin

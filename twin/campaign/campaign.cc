@@ -1,0 +1,236 @@
+#include "twin/campaign/campaign.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+#include "hw_bridge/base/random.h"
+#include "hw_bridge/base/text.h"
+#include "scenes/engine/engine_error.h"
+#include "twin/campaign/file_lock.h"
+
+namespace tubetwin {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kDefaultPart = "pvc_a";  // As ScenarioPile has it.
+
+/// What a campaign file says besides its arms.
+struct CampaignKeys {
+  Campaign& campaign;
+  void Visit(ConfigVisitor& v) {
+    v.Field("seed", "seed of the campaign; each round's is drawn from it", campaign.seed,
+            {0, 9007199254740991.0});
+    v.Field("rounds", "rounds of every arm", campaign.rounds, {1, 1000000});
+    v.Section("keep", "what stays of rounds besides their rows", campaign.keep);
+  }
+};
+
+/// What is left of an arm when its scenario keys are taken out; these only serve messages.
+struct ArmKeys {
+  std::string name, part, count, profile, set;
+  void Visit(ConfigVisitor& v) {
+    v.Field("name", "what reports call it", name);
+    v.Field("part", "part name or part file", part);
+    v.Field("count", "tubes", count);
+    v.Field("profile", "pipeline profile", profile);
+    v.Field("set", "scenario keys", set);
+  }
+};
+
+bool IsCampaignKey(const std::string& override_text) {
+  const std::string first = override_text.substr(0, override_text.find_first_of(".= \t"));
+  return first == "seed" || first == "rounds" || first == "keep";
+}
+
+/// "pvc_a x 7, leao2020, resolution.strategy=plus45".
+std::string ArmName(const std::string& given, bool alone, const ConfigSource& keys,
+                    const CampaignArm& arm) {
+  if (!given.empty() && alone) return given;
+  std::vector<std::string> parts;
+  if (!given.empty()) parts.push_back(given);
+  parts.push_back(arm.part.name + " x " + std::to_string(arm.tubes));
+  if (arm.scenario.profile != Scenario().profile) parts.push_back(arm.scenario.profile);
+  for (const auto& [key, value] : keys.Texts()) {
+    if (key == "pile.part" || key == "pile.count" || key == "profile") continue;
+    parts.push_back(key + "=" + value);
+  }
+  return Join(parts);
+}
+
+/// Reads what rounds will read, so that a missing part or pile is told before the first.
+void ReadInputs(CampaignArm& arm, const std::string& folder) {
+  Scenario& scenario = arm.scenario;
+  if (!scenario.pile.file.empty()) {
+    const Pile pile = AskedPile(scenario, folder);
+    arm.part = pile.part;
+    arm.tubes = static_cast<int>(pile.tubes.size());
+    return;
+  }
+  arm.part = LoadPart(scenario.pile.part.empty() ? kDefaultPart : scenario.pile.part);
+  arm.tubes = scenario.pile.count;
+  ScenarioBin(scenario, Bin().size_m);
+}
+
+void AddArms(ConfigSource table, const std::string& where,
+             const std::vector<std::string>& overrides, Campaign& campaign) {
+  ConfigSource keys = table.TakeTable("set");
+  table.MoveKey("part", keys, "pile.part");
+  table.MoveKey("count", keys, "pile.count");
+  table.MoveKey("profile", keys, "profile");
+  ArmKeys left;
+  table.ReadInto(left);
+  Scenario any;
+  std::vector<ConfigSource> grid = keys.ExpandLists([&any](ConfigVisitor& v) { any.Visit(v); });
+  for (ConfigSource& point : grid) {
+    for (const std::string& text : overrides) point.AddOverride(text);
+    CampaignArm arm;
+    arm.scenario.seed = 0;
+    point.ReadInto(arm.scenario);
+    if (arm.scenario.seed != 0) {
+      throw Error(ErrorKind::kConfig, where +
+                                          ": set: seed: rounds of all arms share the seeds that "
+                                          "come from the campaign's; give it at the top");
+    }
+    ReadInputs(arm, campaign.folder);
+    arm.name = ArmName(left.name, grid.size() == 1, point, arm);
+    campaign.arms.push_back(std::move(arm));
+  }
+}
+
+Json ArmIdentity(const CampaignArm& arm, int index, const std::string& folder) {
+  Scenario scenario = arm.scenario;  // Visiting is non-const: one list serves reading and writing.
+  Json out;
+  out["arm"] = index;
+  out["name"] = arm.name;
+  out["tubes"] = arm.tubes;
+  out["part"] = PartToJson(arm.part);
+  if (!scenario.pile.file.empty()) {
+    const fs::path file = fs::path(folder) / scenario.pile.file;
+    out["pile_fingerprint"] = Fingerprint(ReadFile(file.string()));
+  }
+  out["config"] =
+      Json::parse(WriteConfigJson([&scenario](ConfigVisitor& v) { scenario.Visit(v); }));
+  out["config"].erase("seed");  // Each round has its own.
+  return out;
+}
+
+std::string KeyOf(std::string pointer) {
+  std::replace(pointer.begin(), pointer.end(), '/', '.');
+  return pointer.empty() ? pointer : pointer.substr(1);
+}
+
+}  // namespace
+
+void KeepConfig::Visit(ConfigVisitor& v) {
+  v.Field("failures", "rounds with a failed attempt whose folder is kept, per shard", failures,
+          {0, 1000000});
+  v.Field("sample", "share of rounds whose folder is kept whatever came of them", sample, {0, 1});
+  v.Field("films", "draw failed attempts and sampled rounds", films);
+}
+
+Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& overrides,
+                      std::optional<std::int64_t> seed) {
+  ConfigSource source;
+  source.AddFile(path);
+  std::vector<std::string> for_arms;
+  for (const std::string& text : overrides) {
+    if (IsCampaignKey(text)) {
+      source.AddOverride(text);
+    } else {
+      for_arms.push_back(text);
+    }
+  }
+  std::vector<ConfigSource> tables = source.TakeTables("arm");
+  Campaign campaign;
+  const fs::path parent = fs::path(path).parent_path();
+  if (!parent.empty()) campaign.folder = parent.string();
+  CampaignKeys keys{campaign};
+  source.ReadInto(keys);
+  if (seed) campaign.seed = *seed;
+  if (tables.empty()) {
+    throw Error(ErrorKind::kConfig, path +
+                                        ": no [[arm]] table; at least one is needed, for example\n"
+                                        "[[arm]]\npart = \"pvc_a\"\ncount = 7");
+  }
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    AddArms(std::move(tables[i]), path + ": arm " + std::to_string(i), for_arms, campaign);
+  }
+  std::set<std::string> names;
+  for (const CampaignArm& arm : campaign.arms) {
+    if (!names.insert(arm.name).second) {
+      throw Error(ErrorKind::kConfig,
+                  path + ": two arms are called '" + arm.name + "'; each needs its own name");
+    }
+  }
+  return campaign;
+}
+
+std::int64_t RoundSeed(std::int64_t campaign_seed, int round) {
+  RandomStream stream(static_cast<std::uint64_t>(campaign_seed), static_cast<std::uint64_t>(round),
+                      "round");
+  const std::uint64_t high = stream.NextBits() >> 5;  // 27 bits
+  const std::uint64_t low = stream.NextBits() >> 6;   // 26 bits
+  return static_cast<std::int64_t>((high << 26) | low);
+}
+
+Json CampaignIdentity(const Campaign& campaign, const std::string& program_version) {
+  Json out;
+  out["schema"] = "tubetwin/campaign/1";
+  out["program"] = program_version;
+  out["mujoco"] = EngineVersion();
+  out["seed"] = campaign.seed;
+  out["rounds"] = campaign.rounds;
+  out["arms"] = Json::array();
+  for (std::size_t i = 0; i < campaign.arms.size(); ++i) {
+    out["arms"].push_back(ArmIdentity(campaign.arms[i], static_cast<int>(i), campaign.folder));
+  }
+  return out;
+}
+
+std::optional<std::string> FirstDifference(const Json& mine, const Json& theirs) {
+  if (mine == theirs) return std::nullopt;
+  const Json a = mine.flatten(), b = theirs.flatten();
+  for (const auto& [key, value] : a.items()) {
+    if (!b.contains(key)) return KeyOf(key) + " is " + value.dump() + " against nothing";
+    if (b[key] != value) return KeyOf(key) + " is " + value.dump() + " against " + b[key].dump();
+  }
+  for (const auto& [key, value] : b.items()) {
+    if (!a.contains(key)) return KeyOf(key) + " is nothing against " + value.dump();
+  }
+  return "the order of keys";  // Equal content, written by another version.
+}
+
+void ClaimCampaignFolder(const std::string& folder, const Json& identity) {
+  MakeFolder(folder);
+  const fs::path out(folder);
+  const auto lock = FileLock::Take((out / "campaign.lock").string());
+  const std::string file = (out / "campaign.json").string();
+  if (fs::exists(file)) {
+    if (const auto difference = FirstDifference(identity, ReadCampaignIdentity(folder))) {
+      throw Error(ErrorKind::kCannotCreate,
+                  folder + ": holds another campaign: " + *difference +
+                      " there; give another --out, or the old configuration to go on with it");
+    }
+    return;
+  }
+  if (fs::exists(out / "picks.jsonl")) {
+    throw Error(ErrorKind::kCannotCreate,
+                folder + ": holds rows that are no campaign's; give another --out");
+  }
+  WriteJsonFile(identity, file);
+}
+
+Json ReadCampaignIdentity(const std::string& folder) {
+  const std::string file = (fs::path(folder) / "campaign.json").string();
+  if (!fs::exists(file)) {
+    throw Error(ErrorKind::kMissing, folder + ": holds no campaign (campaign.json is missing)");
+  }
+  Json identity = ReadJsonFile(file);
+  RequireSchema(JsonView(identity, file), "campaign");
+  return identity;
+}
+
+}  // namespace tubetwin

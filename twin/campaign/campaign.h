@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/base/json.h"
+#include "models/part.h"
+#include "twin/campaign/scenario.h"
+
+namespace tubetwin {
+
+/// Table [keep]: what stays of rounds besides their rows. Rows never depend on it.
+struct KeepConfig {
+  int failures = 20;     ///< Rounds with a failed attempt whose folder is kept, per shard.
+  double sample = 0.01;  ///< Share of rounds whose folder is kept whatever came of them.
+  bool films = true;     ///< Draw failed attempts and sampled rounds.
+  void Visit(ConfigVisitor& v);
+};
+
+/// One arm: a scenario that every round runs with a seed of its own.
+struct CampaignArm {
+  std::string name;   ///< Unique; made of part, count, profile and set when the file names none.
+  Scenario scenario;  ///< Its seed is a placeholder, RoundSeed() says the round's.
+  Part part;          ///< What scenario.pile.part came to.
+  int tubes = 0;      ///< At the start of each round.
+};
+
+/// A campaign: rounds 0 to rounds - 1 of every arm. Round r of all arms has the same seed.
+struct Campaign {
+  std::int64_t seed = 1;
+  int rounds = 20;
+  KeepConfig keep;
+  std::vector<CampaignArm> arms;
+  std::string folder = ".";  ///< What relative names of pile files refer to.
+};
+
+/// Reads a campaign file: `seed`, `rounds`, `[keep]`, and `[[arm]]` tables with `name`, `part`,
+/// `count`, `profile` and `set = {key = value}` of scenario keys. A list where a key takes one
+/// value (or a list of lists where it takes a list) makes an arm of each. `overrides` are
+/// `a.b=value`: seed, rounds and keep.* of the campaign, anything else a scenario key of every arm.
+/// Everything that rounds read is read once here, so that errors come before any round: throws
+/// Error(kConfig | kMissing | kBadData).
+Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& overrides,
+                      std::optional<std::int64_t> seed);
+
+/// Seed of one round's scenario, below 2^53; the same in every arm.
+std::int64_t RoundSeed(std::int64_t campaign_seed, int round);
+
+/// Content of campaign.json: all that rows depend on, with program and engine version. Two
+/// campaigns with equal identity give equal rows.
+Json CampaignIdentity(const Campaign& campaign, const std::string& program_version);
+
+/// The first key in which two identities differ with both values, for messages; nothing when equal.
+std::optional<std::string> FirstDifference(const Json& mine, const Json& theirs);
+
+/// Makes `folder` this campaign's: writes campaign.json, or checks the one that is there. Safe for
+/// processes that claim at the same time. Throws Error(kCannotCreate) when the folder belongs to
+/// another campaign (naming the first key that differs) or holds a single round.
+void ClaimCampaignFolder(const std::string& folder, const Json& identity);
+
+/// Reads FOLDER/campaign.json. Throws Error(kMissing) when the folder is no campaign's,
+/// Error(kBadData).
+Json ReadCampaignIdentity(const std::string& folder);
+
+}  // namespace tubetwin

@@ -1,0 +1,261 @@
+#include "twin/campaign/run_campaign.h"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "hw_bridge/base/files.h"
+#include "twin/campaign/campaign_status.h"
+#include "twin/campaign/kept_rounds.h"
+#include "twin/campaign/scoring.h"
+#include "twin/campaign/shard_file.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr int kPollMilliseconds = 200;  // How late a stop is noticed at most.
+constexpr double kStatusEvery_s = 10.0;
+constexpr int kTriesWhenKilled = 2;
+
+double MonotonicNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class ShardRunner {
+ public:
+  ShardRunner(const Campaign& campaign, const RoundFunction& run, const CampaignRunOptions& options)
+      : campaign_(campaign), run_(run), options_(options), began_s_(MonotonicNow()) {
+    const Json identity = CampaignIdentity(campaign, options.program_version);
+    ClaimCampaignFolder(options.out_folder, identity);
+    std::vector<std::string> notes;
+    writer_ = std::make_unique<ShardWriter>(options.out_folder, options.shard,
+                                            Fingerprint(identity.dump()), notes);
+    for (const std::string& note : notes) Notice(note);
+    CollectTasks();
+  }
+
+  CampaignRun Run() {
+    WriteStatus("running");
+    try {
+      Loop();
+    } catch (...) {
+      workers_.clear();
+      TryWriteStatus("failed");
+      throw;
+    }
+    CampaignRun result;
+    const bool whole = progress_.done == progress_.total;
+    result.end = whole      ? CampaignEnd::kDone
+                 : stopped_ ? CampaignEnd::kStopped
+                            : CampaignEnd::kTimeLimit;
+    WriteStatus(whole ? "done" : "stopped");
+    result.progress = progress_;
+    return result;
+  }
+
+ private:
+  void Notice(const std::string& line) {
+    if (options_.notice) options_.notice(line);
+  }
+
+  /// What is left to do: every round of the shard that was not found, all arms of a round together
+  /// so that a campaign that ends early still compares like with like.
+  void CollectTasks() {
+    std::set<std::pair<int, int>> found;
+    const int arms = static_cast<int>(campaign_.arms.size());
+    for (const RoundRecord& record : writer_->found()) {
+      if (record.arm >= arms || record.round >= campaign_.rounds ||
+          record.seed != RoundSeed(campaign_.seed, record.round)) {
+        throw Error(ErrorKind::kBadData,
+                    options_.out_folder + ": " + NameOf(record) + " is no round of this campaign");
+      }
+      found.emplace(record.round, record.arm);
+      Count(record);
+    }
+    progress_.shard = options_.shard;
+    for (int round = options_.shard.index; round < campaign_.rounds;
+         round += options_.shard.count) {
+      for (int arm = 0; arm < arms; ++arm) {
+        ++progress_.total;
+        if (found.count({round, arm}) == 0) {
+          tasks_.push_back({{arm, round, RoundSeed(campaign_.seed, round), false}, 0});
+        }
+      }
+    }
+    found_ = progress_.done;
+  }
+
+  void Count(const RoundRecord& record) {
+    ++progress_.done;
+    for (const Json& row : record.picks) {
+      ++progress_.attempts;
+      progress_.successes += row["success"] == true ? 1 : 0;
+    }
+    progress_.faults += IsFaultSummary(record.summary) ? 1 : 0;
+  }
+
+  bool MayBegin() {
+    if (!stopped_ && options_.stop_requested && options_.stop_requested()) {
+      stopped_ = true;
+      grace_ends_s_ = MonotonicNow() + options_.grace_s;
+      Notice(workers_.empty()
+                 ? "stopping"
+                 : "stopping; the rounds in hand have " +
+                       std::to_string(static_cast<int>(options_.grace_s)) + " s to end");
+    }
+    return !stopped_ && !refused_ &&
+           !(options_.limit_s && MonotonicNow() - began_s_ >= *options_.limit_s);
+  }
+
+  void Begin(std::pair<RoundTask, int> next) {
+    RoundTask& task = next.first;
+    task.keep_failure = KeptFailures(options_.out_folder, options_.shard) < campaign_.keep.failures;
+    workers_.push_back(
+        {std::make_unique<RoundWorker>(task, run_, [this] { writer_->CloseInChild(); }),
+         next.second + 1});
+  }
+
+  void Loop() {
+    for (;;) {
+      while (MayBegin() && !tasks_.empty() && static_cast<int>(workers_.size()) < options_.jobs) {
+        const auto next = tasks_.front();
+        tasks_.pop_front();
+        Begin(next);
+      }
+      if (workers_.empty()) break;
+      Wait();
+      ReadWorkers();
+      if (stopped_ && MonotonicNow() >= grace_ends_s_ && !workers_.empty()) {
+        Notice(std::to_string(workers_.size()) + " rounds in hand did not end in time, dropped");
+        workers_.clear();
+      }
+      Tell();
+    }
+    if (refused_) throw *refused_;
+  }
+
+  void Wait() {
+    std::vector<pollfd> fds;
+    for (const Worker& worker : workers_) fds.push_back({worker.process->fd(), POLLIN, 0});
+    ::poll(fds.data(), fds.size(), kPollMilliseconds);  // A signal ends it early, that is all.
+  }
+
+  struct Worker {
+    std::unique_ptr<RoundWorker> process;
+    int tries = 1;
+  };
+
+  void ReadWorkers() {
+    for (Worker& worker : workers_) {
+      if (auto result = worker.process->Read()) Take(worker, *result);
+      if (worker.process->ended()) {
+        progress_.peak_memory_kB =
+            std::max(progress_.peak_memory_kB, worker.process->peak_memory_kB());
+        if (!worker.process->note().empty()) {
+          Notice(NameOf(worker.process->task()) + ": " + worker.process->note());
+        }
+      }
+    }
+    std::erase_if(workers_, [](const Worker& worker) { return worker.process->ended(); });
+  }
+
+  static std::string NameOf(const RoundTask& task) {
+    RoundRecord named;
+    named.arm = task.arm;
+    named.round = task.round;
+    return tubetwin::NameOf(named);
+  }
+  static std::string NameOf(const RoundRecord& record) { return tubetwin::NameOf(record); }
+
+  void Take(const Worker& worker, RoundWorker::Result& result) {
+    using Kind = RoundWorker::Result::Kind;
+    const RoundTask& task = worker.process->task();
+    if (result.kind == Kind::kRefused) {
+      if (!refused_) refused_ = result.error;
+      return;
+    }
+    if (result.kind == Kind::kKilled && worker.tries < kTriesWhenKilled) {
+      Notice(NameOf(task) + ": " + result.reason + "; it runs once more");
+      tasks_.push_front({task, worker.tries});
+      return;
+    }
+    RoundRecord record{task.arm, task.round, task.seed, {}, {}, {}};
+    if (result.kind == Kind::kRows) {
+      record.summary = std::move(result.output.summary);
+      record.picks = std::move(result.output.picks);
+      record.timings = std::move(result.output.timings);
+    } else {
+      const std::string reason =
+          (result.kind == Kind::kThrown ? "the round failed: " : "the round crashed: ") +
+          result.reason;
+      Notice(NameOf(task) + ": " + reason);
+      record.summary = FaultSummary(campaign_.arms[task.arm].tubes, reason);
+      record.picks = {FaultRow(reason)};
+      record.timings = {FaultTimingRow(worker.process->seconds())};
+    }
+    for (auto* rows : {&record.picks, &record.timings}) {
+      for (Json& row : *rows) row = CampaignRow(row, task.arm, task.round);
+    }
+    writer_->Append(record);
+    Count(record);
+    const double elapsed_s = MonotonicNow() - began_s_;
+    progress_.rounds_per_hour = 3600.0 * (progress_.done - found_) / elapsed_s;
+    tell_next_s_ = 0.0;
+  }
+
+  void Tell() {
+    const double now = MonotonicNow();
+    progress_.running = static_cast<int>(workers_.size());
+    progress_.seconds_left = std::nullopt;
+    if (progress_.rounds_per_hour > 0.0) {
+      progress_.seconds_left =
+          3600.0 * (progress_.total - progress_.done) / progress_.rounds_per_hour;
+    }
+    if (options_.progress && now >= tell_next_s_) {
+      options_.progress(progress_);
+      tell_next_s_ = now + 0.5;
+    }
+    if (now >= status_next_s_) WriteStatus("running");
+  }
+
+  void WriteStatus(const std::string& state) {
+    progress_.running = static_cast<int>(workers_.size());
+    WriteShardStatus(options_.out_folder, progress_, state);
+    status_next_s_ = MonotonicNow() + kStatusEvery_s;
+  }
+
+  void TryWriteStatus(const std::string& state) {
+    try {
+      WriteStatus(state);
+    } catch (const Error&) {  // The disk may be full; the error on its way says why.
+    }
+  }
+
+  const Campaign& campaign_;
+  const RoundFunction& run_;
+  const CampaignRunOptions& options_;
+  const double began_s_;
+  std::unique_ptr<ShardWriter> writer_;
+  std::deque<std::pair<RoundTask, int>> tasks_;  ///< With how often each was tried.
+  std::vector<Worker> workers_;
+  ShardProgress progress_;
+  int found_ = 0;  ///< Rounds that were done before.
+  bool stopped_ = false;
+  double grace_ends_s_ = 0.0, tell_next_s_ = 0.0, status_next_s_ = 0.0;
+  std::optional<Error> refused_;
+};
+
+}  // namespace
+
+CampaignRun RunCampaign(const Campaign& campaign, const RoundFunction& run,
+                        const CampaignRunOptions& options) {
+  TT_CHECK(options.jobs >= 1);
+  return ShardRunner(campaign, run, options).Run();
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,199 @@
+#include "twin/campaign/shard_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+
+namespace tubetwin {
+namespace fs = std::filesystem;
+namespace {
+
+std::optional<Shard> ShardOfName(const std::string& name) {
+  Shard shard;
+  if (std::sscanf(name.c_str(), "shard-%d-of-%d.jsonl", &shard.index, &shard.count) != 2 ||
+      shard.count < 1 || shard.index < 0 || shard.index >= shard.count ||
+      ShardFileName(shard) != name) {
+    return std::nullopt;
+  }
+  return shard;
+}
+
+std::string HeadLine(const Shard& shard, const std::string& campaign) {
+  return CheckedLine(Json{{"schema", "tubetwin/shard/1"},
+                          {"shard", shard.index},
+                          {"of", shard.count},
+                          {"campaign", campaign}});
+}
+
+std::string HostName() {
+  char name[256] = "";
+  ::gethostname(name, sizeof name - 1);
+  return name;
+}
+
+/// Drops doubled rounds; differing ones are an error.
+std::vector<RoundRecord> Unique(const ShardContent& content, const std::string& path,
+                                std::vector<std::string>& notes) {
+  std::vector<RoundRecord> out;
+  std::map<std::pair<int, int>, std::size_t> seen;
+  for (std::size_t i = 0; i < content.records.size(); ++i) {
+    const RoundRecord& record = content.records[i];
+    const auto [at, is_new] = seen.emplace(std::pair{record.arm, record.round}, i);
+    if (is_new) {
+      out.push_back(record);
+      continue;
+    }
+    const std::string where = path + ":" + std::to_string(content.line_of[i]) + ": " +
+                              NameOf(record) + " stands already in line " +
+                              std::to_string(content.line_of[at->second]);
+    const std::string difference = RecordDifference(content.records[at->second], record);
+    if (!difference.empty()) {
+      throw Error(ErrorKind::kBadData, where + " and differs: " + difference);
+    }
+    notes.push_back(where + "; one is dropped");
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string ShardFileName(const Shard& shard) {
+  char name[64];
+  std::snprintf(name, sizeof name, "shard-%05d-of-%05d.jsonl", shard.index, shard.count);
+  return name;
+}
+
+std::vector<std::string> ShardFiles(const std::string& folder) {
+  std::vector<std::string> out;
+  std::error_code ignored;  // An unreadable folder holds no shard, callers say so.
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (ShardOfName(entry.path().filename().string())) out.push_back(entry.path().string());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+ShardContent ReadShardFile(const std::string& path) {
+  ShardContent out;
+  const auto shard = ShardOfName(fs::path(path).filename().string());
+  if (!shard) {
+    throw Error(ErrorKind::kBadData, path + ": shard files are named shard-00000-of-00004.jsonl");
+  }
+  out.shard = *shard;
+  const std::string text = ReadFile(path);
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::string where = path + ":" + std::to_string(number) + ": ";
+    // A line counts when its line break is there too: the next one is written behind it.
+    if (lines.eof()) {
+      out.problems.push_back(where + "half-written");
+      break;
+    }
+    try {
+      if (number == 1) {
+        const Json head = ParseCheckedLine(line);
+        const JsonView view(head, "head");
+        RequireSchema(view, "shard");
+        out.campaign = view.Field("campaign").AsString();
+      } else {
+        RoundRecord record = ParseRecordLine(line);
+        if (!out.shard.Owns(record.round)) {
+          throw Error(ErrorKind::kBadData, NameOf(record) + " is none of shard " + shard->Name());
+        }
+        out.records.push_back(std::move(record));
+        out.line_of.push_back(number);
+      }
+    } catch (const Error& e) {
+      out.problems.push_back(where + e.what());
+    }
+  }
+  return out;
+}
+
+ShardWriter::ShardWriter(const std::string& folder, const Shard& shard, const std::string& campaign,
+                         std::vector<std::string>& notes)
+    : path_((fs::path(folder) / ShardFileName(shard)).string()) {
+  const std::string lock_file = path_ + ".lock";
+  lock_ = FileLock::TryTake(lock_file);
+  if (!lock_) {
+    throw Error(ErrorKind::kInterrupted, path_ + ": shard " + shard.Name() + " is being run by " +
+                                             ReadFile(lock_file) + "; wait for it to end");
+  }
+  lock_->Sign("process " + std::to_string(::getpid()) + " on " + HostName());
+  for (const std::string& other : ShardFiles(folder)) {
+    const auto found = ShardOfName(fs::path(other).filename().string());
+    if (found->count != shard.count) {
+      throw Error(ErrorKind::kCannotCreate,
+                  folder + ": is split into " + std::to_string(found->count) + " shards (" +
+                      fs::path(other).filename().string() + "), not " +
+                      std::to_string(shard.count) + "; go on with " + std::to_string(found->count) +
+                      ", or give another --out");
+    }
+  }
+  const std::string head = HeadLine(shard, campaign) + "\n";
+  if (!fs::exists(path_)) {
+    WriteFileAtomically(path_, head);
+  } else {
+    const ShardContent content = ReadShardFile(path_);
+    if (!content.campaign.empty() && content.campaign != campaign) {
+      throw Error(ErrorKind::kCannotCreate, path_ + ": holds rounds of another campaign");
+    }
+    for (const std::string& problem : content.problems) notes.push_back(problem + "; dropped");
+    found_ = Unique(content, path_, notes);
+    if (content.campaign.empty() || !content.problems.empty() ||
+        found_.size() != content.records.size()) {
+      std::string text = head;
+      for (const RoundRecord& record : found_) text += RecordLine(record) + "\n";
+      WriteFileAtomically(path_, text);
+    }
+  }
+  fd_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (fd_ < 0) {
+    throw Error(ErrorKind::kCannotCreate, path_ + ": cannot be opened: " + std::strerror(errno));
+  }
+}
+
+ShardWriter::~ShardWriter() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+void ShardWriter::CloseInChild() {
+  if (fd_ >= 0) ::close(fd_);
+  fd_ = -1;
+  lock_.reset();  // Closing one of two descriptors keeps the parent's lock.
+}
+
+void ShardWriter::Append(const RoundRecord& record) {
+  TT_CHECK(fd_ >= 0);
+  const std::string line = RecordLine(record) + "\n";
+  const off_t before = ::lseek(fd_, 0, SEEK_END);
+  std::size_t written = 0;
+  while (written < line.size()) {
+    const ssize_t step = ::write(fd_, line.data() + written, line.size() - written);
+    if (step < 0 && errno == EINTR) continue;
+    if (step <= 0) break;
+    written += static_cast<std::size_t>(step);
+  }
+  if (written == line.size() && ::fdatasync(fd_) == 0) return;
+  const int error = errno;
+  // Half a line would only be dropped later; without it the file is good as it is.
+  [[maybe_unused]] const int cut = before < 0 ? 0 : ::ftruncate(fd_, before);
+  throw Error(ErrorKind::kIo, path_ + ": " + NameOf(record) +
+                                  " cannot be written: " + std::strerror(error) +
+                                  "; make room and run again, all rounds before it are kept");
+}
+
+}  // namespace tubetwin
