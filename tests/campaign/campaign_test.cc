@@ -132,7 +132,7 @@ TEST_CASE("the identity holds what rows depend on and nothing of what is kept") 
   const Json one = CampaignIdentity(Load(folder, text), "1");
   CHECK(CampaignIdentity(Load(folder, "[keep]\nsample = 0.5\n" + text), "1") == one);
   CHECK_THAT(*FirstDifference(CampaignIdentity(Load(folder, text + "count = 8\n"), "1"), one),
-             Contains("arms.0.name") || Contains("arms.0.tubes is 8 against 7"));
+             Contains("arms.0.config.pile.count is 8 against 7"));
   CHECK_THAT(*FirstDifference(CampaignIdentity(Load(folder, text), "2"), one),
              Contains("program is \"2\" against \"1\""));
 }

@@ -104,16 +104,17 @@ Json ArmIdentity(const CampaignArm& arm, int index, const std::string& folder) {
   Scenario scenario = arm.scenario;  // Visiting is non-const: one list serves reading and writing.
   Json out;
   out["arm"] = index;
-  out["name"] = arm.name;
-  out["tubes"] = arm.tubes;
-  out["part"] = PartToJson(arm.part);
+  out["config"] =
+      Json::parse(WriteConfigJson([&scenario](ConfigVisitor& v) { scenario.Visit(v); }));
+  out["config"].erase("seed");  // Each round has its own.
   if (!scenario.pile.file.empty()) {
     const fs::path file = fs::path(folder) / scenario.pile.file;
     out["pile_fingerprint"] = Fingerprint(ReadFile(file.string()));
   }
-  out["config"] =
-      Json::parse(WriteConfigJson([&scenario](ConfigVisitor& v) { scenario.Visit(v); }));
-  out["config"].erase("seed");  // Each round has its own.
+  // What follows from the keys comes after them: a difference names the key.
+  out["part"] = PartToJson(arm.part);
+  out["tubes"] = arm.tubes;
+  out["name"] = arm.name;
   return out;
 }
 

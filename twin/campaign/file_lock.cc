@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include "hw_bridge/base/error.h"
 
@@ -36,9 +38,15 @@ int Lock(int fd, int operation) {
 
 }  // namespace
 
-std::unique_ptr<FileLock> FileLock::TryTake(const std::string& path) {
+std::unique_ptr<FileLock> FileLock::TryTake(const std::string& path, double patience_s) {
+  using Clock = std::chrono::steady_clock;
+  const auto until = Clock::now() + std::chrono::duration<double>(patience_s);
   const int fd = Open(path);
-  const int error = Lock(fd, LOCK_EX | LOCK_NB);
+  int error = Lock(fd, LOCK_EX | LOCK_NB);
+  while (error == EWOULDBLOCK && Clock::now() < until) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    error = Lock(fd, LOCK_EX | LOCK_NB);
+  }
   if (error == EWOULDBLOCK) {
     ::close(fd);
     return nullptr;

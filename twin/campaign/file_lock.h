@@ -9,9 +9,9 @@ namespace tubetwin {
 /// ends, so that a dead owner never blocks. A forked child shares the lock until it closes `fd()`.
 class FileLock {
  public:
-  /// The lock, or null when another process has it. Creates the file. Throws Error(kCannotCreate |
-  /// kIo).
-  static std::unique_ptr<FileLock> TryTake(const std::string& path);
+  /// The lock, or null when another process still has it after `patience_s`. Creates the file.
+  /// Throws Error(kCannotCreate | kIo).
+  static std::unique_ptr<FileLock> TryTake(const std::string& path, double patience_s);
   /// Waits for it.
   static std::unique_ptr<FileLock> Take(const std::string& path);
   ~FileLock();

@@ -19,6 +19,9 @@ namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
 
+// A child that was just forked shares the lock for a moment, also when its parent is killed then.
+constexpr double kPatience_s = 2.0;
+
 std::optional<Shard> ShardOfName(const std::string& name) {
   Shard shard;
   if (std::sscanf(name.c_str(), "shard-%d-of-%d.jsonl", &shard.index, &shard.count) != 2 ||
@@ -127,7 +130,7 @@ ShardWriter::ShardWriter(const std::string& folder, const Shard& shard, const st
                          std::vector<std::string>& notes)
     : path_((fs::path(folder) / ShardFileName(shard)).string()) {
   const std::string lock_file = path_ + ".lock";
-  lock_ = FileLock::TryTake(lock_file);
+  lock_ = FileLock::TryTake(lock_file, kPatience_s);
   if (!lock_) {
     throw Error(ErrorKind::kInterrupted, path_ + ": shard " + shard.Name() + " is being run by " +
                                              ReadFile(lock_file) + "; wait for it to end");
