@@ -113,6 +113,7 @@ TEST_CASE("a bad campaign file is refused with its place and what is allowed") {
   CheckRefused("[[arm]]\n[[arm]]\n", ErrorKind::kConfig, "two arms are called 'pvc_a x 7'");
   CheckRefused("arm = 3\n", ErrorKind::kConfig, "[[arm]]");
   CheckRefused("[[arm]]\nset = {pile.file = \"no.csv\"}\n", ErrorKind::kMissing, "no.csv");
+  CheckRefused("[[arm]]\nset = {bin.mesh = \"no.stl\"}\n", ErrorKind::kMissing, "no.stl");
 }
 
 TEST_CASE("seeds of rounds are the arms' in common, differ and depend on the campaign's seed") {

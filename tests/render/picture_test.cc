@@ -10,6 +10,7 @@
 #include "hw_bridge/base/files.h"
 #include "scenes/engine/engine_error.h"
 #include "tests/support/catch.h"
+#include "tests/support/tube_mesh.h"
 #include "twin/render/film_panels.h"
 #include "twin/render/picture.h"
 #include "twin/render/pile_picture.h"
@@ -180,6 +181,38 @@ TEST_CASE("While the cell stands still the film goes on: every frame, clock and 
   CHECK(difference(5, 38, clock) > 5 * kCodecNoise);
   CHECK(difference(5, 38, caption) > 5 * kCodecNoise);
   CHECK(difference(38, 39, scene) > kCodecNoise / 4);  // The ball jumped: drawn anew.
+}
+
+TEST_CASE("A mesh is drawn in the place of the plain shapes that it replaces", "[render]") {
+  const Folder folder;
+  Recording recording = SmallRecording(1);
+  const auto drawn = [&](const std::string& name) {
+    WriteRecording(recording, folder.File("a.rec"));
+    RenderPicture(ReadRecording(folder.File("a.rec")), 0, folder.File(name));
+    return cv::imread(folder.File(name));
+  };
+  const cv::Mat plain = drawn("plain.png");
+  // The same floor as a mesh, painted as the bin; then a bin in its place.
+  recording.visuals = {{"world", {"bin_floor"}, MakeBoxMesh({0.6, 0, 0.09}, {0.4, 0.3, 0.01})}};
+  const cv::Mat same = drawn("same.png");
+  recording.visuals[0].mesh = MakeBinMesh({0.8, 0.6, 0.3}, 0.02);
+  for (Vector3& v : recording.visuals[0].mesh.vertices) v += Vector3(0.6, 0, 0.09);
+  const cv::Mat bin = drawn("bin.png");
+  const auto differing = [](const cv::Mat& a, const cv::Mat& b) {
+    int count = 0;
+    for (int i = 0; i < a.rows; ++i) {
+      for (int k = 0; k < a.cols; ++k) {
+        count += cv::norm(a.at<cv::Vec3b>(i, k) - b.at<cv::Vec3b>(i, k)) > 40;
+      }
+    }
+    return count;
+  };
+  const int floor = differing(plain, same);
+  CHECK(floor > 10'000);  // It has another colour.
+  CHECK(floor < 200'000);
+  CHECK(differing(same, bin) > 10'000);  // The walls.
+  recording.visuals[0].body = "arm_link9";
+  CHECK_THROWS_WITH(RenderPicture(recording, 0, folder.File("a.png")), Contains("arm_link9"));
 }
 
 TEST_CASE("A film of nothing or of the wrong cell is refused and leaves no file", "[render]") {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <sstream>
+#include <utility>
 
 namespace tubetwin {
 namespace {
@@ -144,6 +145,36 @@ Mesh MakeBoxMesh(const Vector3& centre, const Vector3& half_m) {
   }
   mesh.faces = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                 {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  return mesh;
+}
+
+Mesh MakeBinMesh(const Vector3& size_m, double wall_m, double lean_m) {
+  Mesh mesh;
+  const auto add_ring = [&](double x, double y, double z) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (const auto& [sx, sy] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+      mesh.vertices.push_back({sx * x, sy * y, z});
+    }
+    return first;
+  };
+  const auto add_band = [&](int low, int high) {
+    for (int k = 0; k < 4; ++k) {
+      const int n = (k + 1) % 4;
+      mesh.faces.push_back({low + k, high + k, high + n});
+      mesh.faces.push_back({low + k, high + n, low + n});
+    }
+  };
+  const double x = 0.5 * size_m.x(), y = 0.5 * size_m.y(), z = size_m.z();
+  const int floor = add_ring(x, y, 0.0), rim = add_ring(x + lean_m, y + lean_m, z);
+  mesh.faces = {{floor, floor + 1, floor + 2}, {floor, floor + 2, floor + 3}};
+  add_band(floor, rim);
+  if (wall_m <= 0.0) return mesh;
+  const int outer_rim = add_ring(x + lean_m + wall_m, y + lean_m + wall_m, z);
+  const int foot = add_ring(x + wall_m, y + wall_m, -wall_m);
+  add_band(rim, outer_rim);
+  add_band(outer_rim, foot);
+  mesh.faces.push_back({foot, foot + 2, foot + 1});
+  mesh.faces.push_back({foot, foot + 3, foot + 2});
   return mesh;
 }
 

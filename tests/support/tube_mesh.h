@@ -21,6 +21,11 @@ Mesh MakeTubeMesh(const Polyline& line, double radius_m, const TubeMeshOptions& 
 Mesh MakeSphereMesh(const Vector3& centre, double radius_m);
 Mesh MakeBoxMesh(const Vector3& centre, const Vector3& half_m);
 
+/// An open box with its floor's inner middle at the origin, z up. `size_m` is the inside at the
+/// floor, `wall_m` the thickness (0: a sheet; its first faces are the floor's two, then two per
+/// wall), `lean_m` how much further out each wall is at its top.
+Mesh MakeBinMesh(const Vector3& size_m, double wall_m, double lean_m = 0.0);
+
 /// Both meshes in one.
 Mesh Together(const Mesh& a, const Mesh& b);
 

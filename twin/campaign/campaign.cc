@@ -63,6 +63,7 @@ std::string ArmName(const std::string& given, bool alone, const ConfigSource& ke
 /// Reads what rounds will read, so that a missing part or pile is told before the first.
 void ReadInputs(CampaignArm& arm, const std::string& folder) {
   Scenario& scenario = arm.scenario;
+  ScenarioVisuals(scenario, folder);
   if (!scenario.pile.file.empty()) {
     const Pile pile = AskedPile(scenario, folder);
     arm.part = pile.part;
@@ -71,7 +72,7 @@ void ReadInputs(CampaignArm& arm, const std::string& folder) {
   }
   arm.part = LoadPart(scenario.pile.part.empty() ? kDefaultPart : scenario.pile.part);
   arm.tubes = scenario.pile.count;
-  ScenarioBin(scenario, Bin().size_m);
+  ScenarioBin(scenario, Bin().size_m, folder);
 }
 
 void AddArms(ConfigSource table, const std::string& where,
@@ -110,6 +111,10 @@ Json ArmIdentity(const CampaignArm& arm, int index, const std::string& folder) {
   if (!scenario.pile.file.empty()) {
     const fs::path file = fs::path(folder) / scenario.pile.file;
     out["pile_fingerprint"] = Fingerprint(ReadFile(file.string()));
+  }
+  if (!scenario.bin.mesh.empty()) {
+    const fs::path file = fs::path(folder) / scenario.bin.mesh;
+    out["bin_mesh_fingerprint"] = Fingerprint(ReadFile(file.string()));
   }
   // What follows from the keys comes after them: a difference names the key.
   out["part"] = PartToJson(arm.part);

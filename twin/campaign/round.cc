@@ -24,10 +24,12 @@ double WallNow() {
 /// Follows one round: rows by truth, recording, failures. Lives as long as the round.
 class RoundRecorder : public CycleObserver {
  public:
-  RoundRecorder(TwinCell& twin, const Pile& pile, const RoundOptions& options)
+  RoundRecorder(TwinCell& twin, const Pile& pile, std::vector<Recording::Visual> visuals,
+                const RoundOptions& options)
       : twin_(twin), options_(options), scorer_(twin, static_cast<int>(pile.tubes.size())) {
     recording_.cell_xml = twin.ModelXml();
     recording_.bin = pile.bin;
+    recording_.visuals = std::move(visuals);
     twin.SetFrameObserver([this] { AddFrame(); });
     attempt_began_ = WallNow();
   }
@@ -166,12 +168,17 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   // A given pile is archived, so that the resolved configuration runs wherever the folder is moved.
   const bool archive_pile = !scenario.pile.file.empty();
   if (archive_pile) scenario.pile.file = "given.pile.json";
+  std::vector<Recording::Visual> visuals = ScenarioVisuals(scenario, options.scenario_folder);
+  const std::vector<ArchivedFile> meshes = ArchiveMeshes(scenario, options.scenario_folder);
   const std::string resolved = ResolvedToml(scenario);
   ClaimResultFolder(options.out_folder, resolved, options.force);
 
   const RoundPhysics physics = ScenarioPhysics(scenario, asked.part);
   const Pile pile = StartPile(scenario, asked, physics);
   if (archive_pile) SavePile(asked, (out / "given.pile.json").string());
+  for (const ArchivedFile& mesh : meshes) {
+    WriteFileAtomically((out / mesh.name).string(), ReadFile(mesh.from));
+  }
   SavePile(pile, (out / "start.pile.json").string());
 
   TwinCellOptions cell_options;
@@ -184,7 +191,7 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   WriteFileAtomically((out / "config.resolved.toml").string(), resolved);
   fs::remove_all(out / "failures");
 
-  RoundRecorder recorder(twin, pile, options);
+  RoundRecorder recorder(twin, pile, std::move(visuals), options);
   const RoundReport report =
       RunPickCycle(twin.cell(), CycleSetup(scenario, asked.part, options), recorder);
 

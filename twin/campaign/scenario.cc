@@ -3,8 +3,41 @@
 #include <filesystem>
 
 #include "hw_bridge/base/error.h"
+#include "models/bin_mesh.h"
+#include "models/mesh.h"
 
 namespace tubetwin {
+namespace {
+
+std::string PathIn(const std::string& folder, const std::string& file) {
+  const std::filesystem::path path(file);
+  return (path.is_relative() ? std::filesystem::path(folder) / path : path).string();
+}
+
+std::vector<std::string> MeshUnitChoices() {
+  std::vector<std::string> units = MeshUnits();
+  units.insert(units.begin(), "");
+  return units;
+}
+
+struct BinMesh {
+  Mesh mesh;  ///< Metres.
+  MeshBin found;
+};
+
+BinMesh BinOfMesh(const Scenario& scenario, const std::string& folder) {
+  const std::string path = PathIn(folder, scenario.bin.mesh);
+  BinMesh bin;
+  bin.mesh = ReadMesh(path);
+  ScaleToMetres(bin.mesh, scenario.bin.mesh_units, path, "bin.mesh_units");
+  bin.found = FindBinOfMesh(bin.mesh);
+  if (bin.found.verdict != BinVerdict::kBin) {
+    throw Error(ErrorKind::kBadData, path + ": this is no bin for the cell: " + bin.found.reason);
+  }
+  return bin;
+}
+
+}  // namespace
 
 void Scenario::PileChoice::Visit(ConfigVisitor& v) {
   v.Field("file", "pile to start from (pile.json, CSV or the public set's text); empty: generate",
@@ -18,6 +51,8 @@ void Scenario::PileChoice::Visit(ConfigVisitor& v) {
 void Scenario::BinChoice::Visit(ConfigVisitor& v) {
   v.Field("size_m", "long, short, wall height in metres; empty: the pile's, else 0.77 0.58 0.09",
           size_m, 0, {0.01, 3.0});
+  v.Field("mesh", "STL, OBJ or PLY of the bin, z upwards: gives size_m and looks", mesh);
+  v.Choice("mesh_units", "unit of the mesh; empty: metres", mesh_units, MeshUnitChoices());
   v.Field("X_BN", "floor centre x y z in metres and yaw in degrees, in the robot's base", X_BN, 4);
 }
 
@@ -30,6 +65,15 @@ void Scenario::CellChoice::ScannerDevice::Visit(ConfigVisitor& v) {
   v.Field("hand_eye_error", "error of the scanner's pose against what [physics] draws; 0: none",
           hand_eye_error, {0, 100});
   effects.Visit(v);
+}
+
+void Scenario::CellChoice::ArmDevice::Visit(ConfigVisitor& v) {
+  Device::Visit(v);
+  v.Field("visual_meshes",
+          "meshes (STL, OBJ, PLY) of base and links 1 to 6 in their own frames, for pictures; "
+          "empty texts: plain shapes",
+          visual_meshes);
+  v.Choice("visual_units", "unit of the meshes; empty: metres", visual_units, MeshUnitChoices());
 }
 
 void Scenario::CellChoice::Visit(ConfigVisitor& v) {
@@ -100,7 +144,8 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
   return scenario;
 }
 
-Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m) {
+Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m,
+                const std::string& folder) {
   Bin bin;
   bin.size_m = pile_size_m;
   if (!scenario.bin.size_m.empty()) {
@@ -111,26 +156,76 @@ Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size
     }
     for (int i = 0; i < 3; ++i) bin.size_m[i] = scenario.bin.size_m[i];
   }
+  if (!scenario.bin.mesh.empty()) {
+    if (!scenario.bin.size_m.empty()) {
+      throw Error(ErrorKind::kConfig,
+                  "bin.size_m and bin.mesh are both given; the mesh says the size: leave one out");
+    }
+    bin.size_m = BinOfMesh(scenario, folder).found.size_m;
+  }
   const auto& x = scenario.bin.X_BN;
   bin.X_BN = MakeTransform(RotZ(Radians(x[3])), Vector3(x[0], x[1], x[2]));
   return bin;
 }
 
+std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario,
+                                               const std::string& folder) {
+  std::vector<Recording::Visual> visuals;
+  if (!scenario.bin.mesh.empty()) {
+    BinMesh bin = BinOfMesh(scenario, folder);
+    const RigidTransform X_BM = ScenarioBin(scenario, {}, folder).X_BN * bin.found.X_MN.inverse();
+    for (Vector3& v : bin.mesh.vertices) v = X_BM * v;
+    visuals.push_back({"world", {"bin_floor", "bin_wall_"}, std::move(bin.mesh)});
+  }
+  const auto& arm = scenario.cell.arm;
+  if (arm.visual_meshes.size() > kNumJoints + 1) {
+    throw Error(ErrorKind::kConfig,
+                "cell.arm.visual_meshes: " + std::to_string(arm.visual_meshes.size()) +
+                    " meshes are given; the arm has a base and 6 links");
+  }
+  for (std::size_t i = 0; i < arm.visual_meshes.size(); ++i) {
+    if (arm.visual_meshes[i].empty()) continue;
+    const std::string path = PathIn(folder, arm.visual_meshes[i]);
+    Mesh mesh = ReadMesh(path);
+    ScaleToMetres(mesh, arm.visual_units, path, "cell.arm.visual_units");
+    // What is mounted on the flange stays.
+    visuals.push_back({i == 0 ? "arm_base" : "arm_link" + std::to_string(i),
+                       {i == kNumJoints ? "arm_flange" : "arm_"},
+                       std::move(mesh)});
+  }
+  return visuals;
+}
+
+std::vector<ArchivedFile> ArchiveMeshes(Scenario& scenario, const std::string& folder) {
+  std::vector<ArchivedFile> files;
+  const auto archive = [&](std::string& file, const std::string& name) {
+    if (file.empty()) return;
+    const std::string path = PathIn(folder, file);
+    file = name + std::filesystem::path(path).extension().string();
+    files.push_back({path, file});
+  };
+  archive(scenario.bin.mesh, "given.bin");
+  for (std::size_t i = 0; i < scenario.cell.arm.visual_meshes.size(); ++i) {
+    archive(scenario.cell.arm.visual_meshes[i], "given.arm_" + std::to_string(i));
+  }
+  return files;
+}
+
 Pile AskedPile(const Scenario& scenario, const std::string& folder) {
-  std::filesystem::path file(scenario.pile.file);
-  if (file.is_relative()) file = std::filesystem::path(folder) / file;
   PileOverrides overrides;
   if (!scenario.pile.part.empty()) overrides.part = scenario.pile.part;
-  if (!scenario.bin.size_m.empty()) overrides.bin_size_m = ScenarioBin(scenario, {}).size_m;
-  Pile pile = LoadPile(file.string(), overrides);
-  pile.bin = ScenarioBin(scenario, pile.bin.size_m);
+  if (!scenario.bin.size_m.empty() || !scenario.bin.mesh.empty()) {
+    overrides.bin_size_m = ScenarioBin(scenario, {}, folder).size_m;
+  }
+  Pile pile = LoadPile(PathIn(folder, scenario.pile.file), overrides);
+  pile.bin = ScenarioBin(scenario, pile.bin.size_m, folder);
   return pile;
 }
 
 Pile ScenarioPile(const Scenario& scenario, const std::string& folder) {
   if (!scenario.pile.file.empty()) return AskedPile(scenario, folder);
   const Part part = LoadPart(scenario.pile.part.empty() ? "pvc_a" : scenario.pile.part);
-  const Bin bin = ScenarioBin(scenario, Bin().size_m);
+  const Bin bin = ScenarioBin(scenario, Bin().size_m, folder);
   const RoundPhysics physics = ScenarioPhysics(scenario, part);
   SettleResult made = GeneratePile(part, bin, scenario.pile.count, scenario.pile.arrangement,
                                    static_cast<std::uint64_t>(scenario.seed), physics);

@@ -2,12 +2,14 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hw_bridge/base/config.h"
 #include "models/physics.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/pick_cycle.h"
 #include "scenes/pile.h"
+#include "twin/render/recording.h"
 #include "twin/render/scan_geometry.h"
 
 namespace tubetwin {
@@ -28,6 +30,8 @@ struct Scenario {
 
   struct BinChoice {
     std::vector<double> size_m;  ///< Empty: what the pile file says, else 0.77 x 0.58 x 0.09.
+    std::string mesh;            ///< Gives size_m, and the bin's looks in pictures; empty: none.
+    std::string mesh_units;      ///< As ScaleToMetres takes it.
     std::vector<double> X_BN = {0.60, 0.0, 0.10, 90.0};  ///< x, y, z in metres, yaw in degrees.
     void Visit(ConfigVisitor& v);
   } bin;
@@ -45,7 +49,14 @@ struct Scenario {
     struct Device {
       std::string driver = "twin";
       void Visit(ConfigVisitor& v);
-    } arm, gripper, wrist;
+    } gripper, wrist;
+    struct ArmDevice : Device {
+      /// Base and links 1 to 6 in their own frames (models/arm/hc10.toml), for pictures; empty
+      /// texts: plain shapes.
+      std::vector<std::string> visual_meshes;
+      std::string visual_units;
+      void Visit(ConfigVisitor& v);
+    } arm;
     struct ScannerDevice : Device {
       double hand_eye_error = 1.0;  ///< Of what [physics] draws; 0: none.
       ScannerEffects effects;
@@ -72,8 +83,23 @@ const std::vector<std::string>& PipelineProfiles();
 /// layers say; empty: it does not. Throws as ConfigSource::ReadInto.
 Scenario ReadScenario(const ConfigSource& source, const std::string& profile = "");
 
-/// The bin of the scenario for a pile that says `pile_size_m`.
-Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m);
+/// The bin of the scenario for a pile that says `pile_size_m`. `folder`: what relative file names
+/// refer to. Throws Error(kConfig) when both size and mesh are given, Error(kBadData) saying why a
+/// mesh is no bin, and as ReadMesh does.
+Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m,
+                const std::string& folder);
+
+/// The scenario's meshes for pictures. Throws as ScenarioBin does, and Error(kConfig) for more
+/// meshes than the arm has links.
+std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario, const std::string& folder);
+
+/// A file of the scenario and its name in the result folder.
+struct ArchivedFile {
+  std::string from, name;
+};
+/// Names the scenario's mesh files by what their copies in the result folder are called, so that
+/// the resolved configuration runs wherever the folder is moved, and says what to copy.
+std::vector<ArchivedFile> ArchiveMeshes(Scenario& scenario, const std::string& folder);
 
 /// The pile of `scenario.pile.file` as it is, with the scenario's part and bin. Precondition: a
 /// file is given. Throws as LoadPile does.

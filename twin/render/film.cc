@@ -23,34 +23,13 @@ constexpr double kLineLift_m = 0.016;
 constexpr double kLineRadius_m = 0.0038, kTargetRadius_m = 0.0065;
 constexpr double kLineTolerance_m = 0.0015;  // Half a pixel.
 
-/// The line with fewer points, none of the old ones farther from it than `tolerance_m`
-/// (Douglas-Peucker): perceived lines have a point per 10 mm, and every piece is drawn twice.
-Polyline Simplified(const Polyline& line, double tolerance_m) {
-  if (line.size() < 3) return line;
-  std::size_t farthest = 0;
-  double distance_m = tolerance_m;
-  for (std::size_t i = 1; i + 1 < line.size(); ++i) {
-    const double d = Closest({line.front(), line.back()}, line[i]).distance_m;
-    if (d > distance_m) {
-      distance_m = d;
-      farthest = i;
-    }
-  }
-  if (farthest == 0) return {line.front(), line.back()};
-  const auto split = line.begin() + static_cast<std::ptrdiff_t>(farthest);
-  Polyline out = Simplified({line.begin(), split + 1}, tolerance_m);
-  const Polyline rest = Simplified({split, line.end()}, tolerance_m);
-  out.insert(out.end(), rest.begin() + 1, rest.end());
-  return out;
-}
-
 /// Draws frames of one recording; every worker has its own data and OpenGL context.
 class FrameDrawer {
  public:
   FrameDrawer(const Recording& recording, int workers, StageQuality quality)
       : recording_(recording),
         quality_(quality),
-        model_(CompileStage(recording.cell_xml, "recording", quality)) {
+        model_(CompileStage(recording, "recording", quality)) {
     const std::size_t nq = static_cast<std::size_t>(model_->nq);
     for (const Recording::Frame& frame : recording.frames) {
       if (frame.qpos.size() == nq) continue;

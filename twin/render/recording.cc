@@ -1,5 +1,6 @@
 #include "twin/render/recording.h"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -19,6 +20,44 @@ constexpr std::size_t kFrameHead = 12;
 constexpr std::size_t kMaxContent = std::size_t{4} << 30;  // 24 hours of a large cell.
 constexpr int kCompression = 6;
 
+Json VisualToJson(const Recording::Visual& visual) {
+  Json vertices = Json::array(), faces = Json::array();
+  for (const Vector3& v : visual.mesh.vertices) {
+    // Micrometres are enough for the eye.
+    for (int k = 0; k < 3; ++k) vertices.push_back(std::round(1e6 * v[k]) / 1e6);
+  }
+  for (const auto& face : visual.mesh.faces) {
+    for (const int i : face) faces.push_back(i);
+  }
+  return {{"body", visual.body},
+          {"replaces", visual.replaces},
+          {"vertices_m", vertices},
+          {"faces", faces}};
+}
+
+Recording::Visual ReadVisual(const JsonView& view) {
+  Recording::Visual visual;
+  visual.body = view.Field("body").AsString();
+  const JsonView replaces = view.Field("replaces"), faces = view.Field("faces");
+  for (std::size_t i = 0; i < replaces.Size(); ++i) {
+    visual.replaces.push_back(replaces.Item(i).AsString());
+  }
+  const std::vector<double> numbers = view.Field("vertices_m").AsNumbers();
+  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
+    visual.mesh.vertices.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+  }
+  const double last = static_cast<double>(visual.mesh.vertices.size()) - 1.0;
+  for (std::size_t i = 0; i + 2 < faces.Size(); i += 3) {
+    std::array<int, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = static_cast<int>(faces.Item(i + k).AsNumber(0.0, last));
+    }
+    visual.mesh.faces.push_back(corners);
+  }
+  if (visual.mesh.faces.empty()) faces.Fail("holds no triangle");
+  return visual;
+}
+
 Json Head(const Recording& recording, std::size_t nq) {
   Json overlays = Json::array();
   for (const Recording::Overlay& overlay : recording.overlays) {
@@ -27,6 +66,8 @@ Json Head(const Recording& recording, std::size_t nq) {
     overlays.push_back(
         {{"lines_m", lines}, {"classes", overlay.classes}, {"target", overlay.target}});
   }
+  Json visuals = Json::array();
+  for (const Recording::Visual& visual : recording.visuals) visuals.push_back(VisualToJson(visual));
   return {{"schema", "tubetwin/recording/1"},
           {"frames_per_second", Recording::kFramesPerSecond},
           {"bin", ToJson(recording.bin)},
@@ -34,6 +75,7 @@ Json Head(const Recording& recording, std::size_t nq) {
           {"frames", recording.frames.size()},
           {"captions", recording.captions},
           {"overlays", overlays},
+          {"visuals", visuals},
           {"cell_xml", recording.cell_xml}};
 }
 
@@ -150,6 +192,11 @@ Recording ReadRecording(const std::string& path) {
   Recording recording;
   recording.cell_xml = head.Field("cell_xml").AsString();
   recording.bin = BinFromJson(head.Field("bin"));
+  if (const auto visuals = head.Optional("visuals")) {
+    for (std::size_t i = 0; i < visuals->Size(); ++i) {
+      recording.visuals.push_back(ReadVisual(visuals->Item(i)));
+    }
+  }
   const JsonView captions = head.Field("captions"), overlays = head.Field("overlays");
   for (std::size_t i = 0; i < captions.Size(); ++i) {
     recording.captions.push_back(captions.Item(i).AsString());

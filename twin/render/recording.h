@@ -7,6 +7,7 @@
 #include "hw_bridge/base/parallel.h"
 #include "hw_bridge/base/polyline.h"
 #include "models/bin.h"
+#include "models/mesh.h"
 
 namespace tubetwin {
 
@@ -26,8 +27,16 @@ struct Recording {
     int overlay = -1;         ///< Index in overlays, -1 none.
     int caption = -1;         ///< Index in captions.
   };
+  /// A user's mesh that pictures show instead of plain shapes.
+  struct Visual {
+    std::string body;  ///< Of the cell's model, with which it moves; "world": it stands.
+    /// How the names of the body's geoms begin that it takes the place of.
+    std::vector<std::string> replaces;
+    Mesh mesh;  ///< In the body's frame.
+  };
   std::string cell_xml;  ///< The compiled cell, as in the result folder.
   Bin bin;
+  std::vector<Visual> visuals;
   std::vector<Overlay> overlays;
   std::vector<std::string> captions;
   std::vector<Frame> frames;

@@ -50,6 +50,7 @@ constexpr Paint kPaints[] = {{"ground", {0.50f, 0.52f, 0.55f, 1.0f}},
                              {"bin_floor", {0.66f, 0.67f, 0.68f, 1.0f}},
                              {"bin_wall_*", {0.20f, 0.33f, 0.50f, 1.0f}},
                              {"bin_plinth", {0.30f, 0.32f, 0.35f, 1.0f}},
+                             {"bin_mesh", {0.20f, 0.33f, 0.50f, 1.0f}},
                              {"arm_*", kPale},
                              {"arm_base", {0.25f, 0.26f, 0.28f, 1.0f}},
                              {"arm_upper arm", kBlue},
@@ -90,6 +91,46 @@ void AddFloor(mjSpec& spec) {
   floor->size[2] = 1.0;
   floor->contype = floor->conaffinity = 0;
   Set(floor->rgba, std::array{0.56f, 0.58f, 0.60f, 1.0f});
+}
+
+/// Puts a mesh in the place of plain shapes. It has no part in anything but pictures.
+void AddVisual(mjSpec& spec, const Recording::Visual& visual, int number,
+               const std::string& source) {
+  mjsBody* body = mjs_findBody(&spec, visual.body.c_str());
+  if (body == nullptr) {
+    throw Error(ErrorKind::kBadData,
+                source + ": a visual belongs to body '" + visual.body + "', which the cell lacks");
+  }
+  std::vector<mjsElement*> replaced;
+  for (mjsElement* geom = mjs_firstChild(body, mjOBJ_GEOM, 0); geom != nullptr;
+       geom = mjs_nextChild(body, geom, 0)) {
+    const std::string name = mjs_getString(mjs_getName(geom));
+    for (const std::string& start : visual.replaces) {
+      if (!name.starts_with(start)) continue;
+      replaced.push_back(geom);
+      break;
+    }
+  }
+  for (mjsElement* geom : replaced) mjs_delete(&spec, geom);
+  std::vector<float> vertices;
+  std::vector<int> faces;
+  for (const Vector3& v : visual.mesh.vertices) {
+    for (int k = 0; k < 3; ++k) vertices.push_back(static_cast<float>(v[k]));
+  }
+  for (const auto& face : visual.mesh.faces) faces.insert(faces.end(), face.begin(), face.end());
+  const std::string name =
+      visual.body == "world" ? "bin_mesh" : "arm_mesh_" + std::to_string(number);
+  mjsMesh* mesh = mjs_addMesh(&spec, nullptr);
+  SetName(mesh->element, name);
+  mesh->inertia = mjMESH_INERTIA_SHELL;  // Whatever the user's mesh encloses.
+  mjs_setFloat(mesh->uservert, vertices.data(), static_cast<int>(vertices.size()));
+  mjs_setInt(mesh->userface, faces.data(), static_cast<int>(faces.size()));
+  mjsGeom* geom = mjs_addGeom(body, nullptr);
+  SetName(geom->element, name);
+  geom->type = mjGEOM_MESH;
+  SetString(geom->meshname, name);
+  geom->contype = geom->conaffinity = 0;
+  geom->mass = 0.0;
 }
 
 }  // namespace
@@ -134,14 +175,20 @@ void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m, StageQual
   visual.map.shadowclip = static_cast<float>(reach_m);
 }
 
-MjModel CompileStage(const std::string& cell_xml, const std::string& source, StageQuality quality) {
+MjModel CompileStage(const Recording& recording, const std::string& source, StageQuality quality) {
   InitEngine();
   char error[512] = "";
   mjSpec* parsed = nullptr;
-  GuardEngine([&] { parsed = mj_parseXMLString(cell_xml.c_str(), nullptr, error, sizeof error); });
+  GuardEngine([&] {
+    parsed = mj_parseXMLString(recording.cell_xml.c_str(), nullptr, error, sizeof error);
+  });
   const MjSpec spec(parsed);
   if (spec == nullptr) {
     throw Error(ErrorKind::kBadData, source + ": the cell's XML does not parse: " + error);
+  }
+  int number = 0;
+  for (const Recording::Visual& visual : recording.visuals) {
+    AddVisual(*spec, visual, number++, source);
   }
   DressStage(*spec, kCellCentre_B, kCellReach_m, quality);
   try {

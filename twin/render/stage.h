@@ -6,6 +6,7 @@
 
 #include "scenes/engine/mj_handles.h"
 #include "scenes/pile.h"
+#include "twin/render/recording.h"
 
 namespace tubetwin {
 
@@ -20,9 +21,9 @@ enum class StageQuality { kStill, kFilm };
 /// coordinates.
 void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m, StageQuality quality);
 
-/// A recorded cell, dressed. `source` names the recording in errors. Throws Error(kBadData) when
-/// the XML does not parse or compile.
-MjModel CompileStage(const std::string& cell_xml, const std::string& source, StageQuality quality);
+/// A recorded cell with its visuals, dressed. `source` names the recording in errors. Throws
+/// Error(kBadData) when the XML does not parse or compile or lacks a visual's body.
+MjModel CompileStage(const Recording& recording, const std::string& source, StageQuality quality);
 
 /// Red, green, blue of a pile's tube in its picture.
 std::array<double, 3> PileColour(int tube);
