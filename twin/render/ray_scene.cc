@@ -126,8 +126,11 @@ struct RayScene::Impl {
 
   void CastPacket(const Pinhole& pinhole, int row0, int column0, bool shadows,
                   HitImage& hits) const;
-  void Light(const RTCRayHit16& seen, RTCRay16& light, int* valid, float* cos_camera,
-             float* cos_projector, float* cos_mirror) const;
+  struct Incidences {
+    float cos_camera[kPacket], cos_projector[kPacket], cos_mirror[kPacket];
+    alignas(64) int lit[kPacket];
+  };
+  void Light(const RTCRayHit16& seen, RTCRay16& light, Incidences& out) const;
 };
 
 RayScene::RayScene(const ScanGeometry& geometry, const RigidTransform& X_BS,
@@ -188,13 +191,13 @@ void RayScene::Impl::CastPacket(const Pinhole& pinhole, int row0, int column0, b
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect16(valid, scene.get(), &context, &packet);
 
-  alignas(64) float cos_camera[kPacket], cos_projector[kPacket], cos_mirror[kPacket];
+  Incidences at_hit;
   alignas(64) RTCRay16 light;
-  Light(packet, light, valid, cos_camera, cos_projector, cos_mirror);
+  Light(packet, light, at_hit);
   if (shadows) {
     bool any = false;
-    for (int i = 0; i < kPacket; ++i) any |= valid[i] != 0;
-    if (any) rtcOccluded16(valid, scene.get(), &context, &light);
+    for (int i = 0; i < kPacket; ++i) any |= at_hit.lit[i] != 0;
+    if (any) rtcOccluded16(at_hit.lit, scene.get(), &context, &light);
   }
   alignas(64) float z_m[kPacket];
   alignas(64) int shape[kPacket];
@@ -204,54 +207,77 @@ void RayScene::Impl::CastPacket(const Pinhole& pinhole, int row0, int column0, b
     const int primitive = static_cast<int>(packet.hit.primID[i]);
     shape[i] = !hit ? -1 : packet.hit.geomID[i] == 0 ? primitive : boxes_from + primitive / 12;
     z_m[i] = hit ? packet.ray.tfar[i] : 0.0f;
-    const bool lit = valid[i] != 0 && light.tfar[i] >= 0.0f;
-    if (!hit || (shadows && !lit)) cos_projector[i] = 0.0f;
-    if (hit && !shadows) cos_projector[i] = std::max(cos_projector[i], kUnshadowed);
+    const bool lit = at_hit.lit[i] != 0 && light.tfar[i] >= 0.0f;
+    if (!hit || (shadows && !lit)) at_hit.cos_projector[i] = 0.0f;
+    if (hit && !shadows) {
+      at_hit.cos_projector[i] = std::max(at_hit.cos_projector[i], kUnshadowed);
+    }
   }
   for (int r = 0; r < kSide; ++r) {
     const std::size_t at = hits.Index(row0 + r, column0);
     std::copy_n(z_m + kSide * r, kSide, &hits.z_m[at]);
-    std::copy_n(cos_camera + kSide * r, kSide, &hits.cos_camera[at]);
-    std::copy_n(cos_projector + kSide * r, kSide, &hits.cos_projector[at]);
-    std::copy_n(cos_mirror + kSide * r, kSide, &hits.cos_mirror[at]);
+    std::copy_n(at_hit.cos_camera + kSide * r, kSide, &hits.cos_camera[at]);
+    std::copy_n(at_hit.cos_projector + kSide * r, kSide, &hits.cos_projector[at]);
+    std::copy_n(at_hit.cos_mirror + kSide * r, kSide, &hits.cos_mirror[at]);
     std::copy_n(shape + kSide * r, kSide, &hits.shape[at]);
   }
 }
 
-/// Incidences of what was seen, and the rays from there to the projector: `valid` where light could
-/// come. Without branches: the compiler makes vector instructions of it.
-void RayScene::Impl::Light(const RTCRayHit16& seen, RTCRay16& light, int* valid, float* cos_camera,
-                           float* cos_projector, float* cos_mirror) const {
+/// Incidences of what was seen, and the rays from there to the projector: `lit` where light could
+/// come. Without branches and on copies: the compiler makes vector instructions of it.
+void RayScene::Impl::Light(const RTCRayHit16& seen, RTCRay16& light, Incidences& out) const {
+  struct {
+    float x[kPacket], y[kPacket], z[kPacket];
+  } ray, normal, start, way;
+  float reach[kPacket];
+  std::copy_n(seen.ray.dir_x, kPacket, ray.x);
+  std::copy_n(seen.ray.dir_y, kPacket, ray.y);
+  std::copy_n(seen.ray.tfar, kPacket, ray.z);
+  std::copy_n(seen.hit.Ng_x, kPacket, normal.x);
+  std::copy_n(seen.hit.Ng_y, kPacket, normal.y);
+  std::copy_n(seen.hit.Ng_z, kPacket, normal.z);
+  const Eigen::Vector3f p = p_SP;
+  const Eigen::Matrix3f R = -R_PS;
+  const float half_width = tan_half_width, half_height = tan_half_height;
   for (int i = 0; i < kPacket; ++i) {
-    const float z = seen.ray.tfar[i], rx = seen.ray.dir_x[i], ry = seen.ray.dir_y[i];
+    const float z = ray.z[i], rx = ray.x[i], ry = ray.y[i];
     const float x = rx * z, y = ry * z;
     const float per_ray = 1.0f / std::sqrt(rx * rx + ry * ry + 1.0f);
-    float nx = seen.hit.Ng_x[i], ny = seen.hit.Ng_y[i], nz = seen.hit.Ng_z[i];
-    const float towards = nx * rx + ny * ry + nz;
+    float nx = normal.x[i], ny = normal.y[i], nz = normal.z[i];
+    const float square = nx * nx + ny * ny + nz * nz;
     // Triangles have two sides; the camera sees the one that looks at it.
-    const float scale =
-        (towards > 0.0f ? -1.0f : 1.0f) / std::sqrt(std::max(nx * nx + ny * ny + nz * nz, 1e-30f));
+    const float side = nx * rx + ny * ry + nz > 0.0f ? -1.0f : 1.0f;
+    const float scale = side / std::sqrt(square > 1e-30f ? square : 1e-30f);
     nx *= scale, ny *= scale, nz *= scale;
-    const float lx = p_SP.x() - x, ly = p_SP.y() - y, lz = p_SP.z() - z;
+    const float lx = p.x() - x, ly = p.y() - y, lz = p.z() - z;
     const float per_light = 1.0f / std::sqrt(lx * lx + ly * ly + lz * lz);
-    cos_camera[i] = -(nx * rx + ny * ry + nz) * per_ray;
-    cos_projector[i] = (nx * lx + ny * ly + nz * lz) * per_light;
+    const float cos_projector = (nx * lx + ny * ly + nz * lz) * per_light;
+    out.cos_camera[i] = -(nx * rx + ny * ry + nz) * per_ray;
+    out.cos_projector[i] = cos_projector;
     const float hx = lx * per_light - rx * per_ray, hy = ly * per_light - ry * per_ray;
     const float hz = lz * per_light - per_ray;
-    cos_mirror[i] = (nx * hx + ny * hy + nz * hz) / std::sqrt(hx * hx + hy * hy + hz * hz);
-    const float px = -(R_PS(0, 0) * lx + R_PS(0, 1) * ly + R_PS(0, 2) * lz);
-    const float py = -(R_PS(1, 0) * lx + R_PS(1, 1) * ly + R_PS(1, 2) * lz);
-    const float pz = -(R_PS(2, 0) * lx + R_PS(2, 1) * ly + R_PS(2, 2) * lz);
-    const bool in_frustum = (pz > 0.0f) & (std::abs(px) <= tan_half_width * pz) &
-                            (std::abs(py) <= tan_half_height * pz);
-    valid[i] = in_frustum & (cos_projector[i] > 0.0f) & (z < kFarthest_m) ? -1 : 0;
-    light.org_x[i] = x + nx * kShadowOffset_m;
-    light.org_y[i] = y + ny * kShadowOffset_m;
-    light.org_z[i] = z + nz * kShadowOffset_m;
-    light.dir_x[i] = lx, light.dir_y[i] = ly, light.dir_z[i] = lz;
-    light.tnear[i] = 0.0f;
-    light.tfar[i] = 1.0f - kWindow_m * per_light;
-    light.time[i] = 0.0f;
+    out.cos_mirror[i] = (nx * hx + ny * hy + nz * hz) / std::sqrt(hx * hx + hy * hy + hz * hz);
+    const float px = R(0, 0) * lx + R(0, 1) * ly + R(0, 2) * lz;
+    const float py = R(1, 0) * lx + R(1, 1) * ly + R(1, 2) * lz;
+    const float pz = R(2, 0) * lx + R(2, 1) * ly + R(2, 2) * lz;
+    const bool in_frustum =
+        (pz > 0.0f) & (std::abs(px) <= half_width * pz) & (std::abs(py) <= half_height * pz);
+    out.lit[i] = in_frustum & (cos_projector > 0.0f) & (z < kFarthest_m) ? -1 : 0;
+    start.x[i] = x + nx * kShadowOffset_m;
+    start.y[i] = y + ny * kShadowOffset_m;
+    start.z[i] = z + nz * kShadowOffset_m;
+    way.x[i] = lx, way.y[i] = ly, way.z[i] = lz;
+    reach[i] = 1.0f - kWindow_m * per_light;
+  }
+  std::copy_n(start.x, kPacket, light.org_x);
+  std::copy_n(start.y, kPacket, light.org_y);
+  std::copy_n(start.z, kPacket, light.org_z);
+  std::copy_n(way.x, kPacket, light.dir_x);
+  std::copy_n(way.y, kPacket, light.dir_y);
+  std::copy_n(way.z, kPacket, light.dir_z);
+  std::copy_n(reach, kPacket, light.tfar);
+  for (int i = 0; i < kPacket; ++i) {
+    light.tnear[i] = light.time[i] = 0.0f;
     light.mask[i] = 0xffffffffu;
     light.id[i] = static_cast<unsigned>(i);
     light.flags[i] = 0;
