@@ -3,25 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "perception/hidden_way.h"
+
 namespace tubetwin {
 namespace {
 
 /// Least seen part of a tube that is reported, as a share of its length and in radii.
 constexpr double kLeastSeen = 0.15;
 constexpr double kLeastSeenRadii = 4.0;
-/// Somewhere a tube shows enough of its roundness (rms sine of the normals; a strip of a third of
 /// Radius by the points, as a share of the part's, from which on a chain is no tube of that part,
 /// and the weight of evidence that this needs. A part file that is 20 % wrong still gets its tubes.
 constexpr double kThinnest = 0.7, kThickest = 1.4;
 constexpr double kRadiusWeight = 20.0;
+/// Somewhere a tube shows enough of its roundness (rms sine of the normals; a strip of a third of
 /// the upper half has this): a stick's edge or a fold does not.
 constexpr double kRound = 0.3;
 /// Shorter lacks are within the error of two ends.
-constexpr double kLack_m = 0.006;
-/// An end with this much of a cap seen is the tube's own end.
-constexpr double kClosed = 0.5;
-/// Other axes stay this far off a completed end, in radii.
-constexpr double kClearance = 1.8;
+constexpr double kLack_m = 0.002;
 
 void Append(PerceivedTube& tube, const Vector3& p_N, bool visible) {
   tube.centerline_N.push_back(p_N);
@@ -57,62 +55,22 @@ double SeenLength(const PerceivedTube& tube) {
   return sum;
 }
 
-/// Prolongs a tube's ends into what no view saw.
-class Completion {
- public:
-  Completion(const std::vector<Fragment>& fragments, const HiddenSpace& space)
-      : fragments_(fragments), space_(space) {}
-
-  /// Adds up to `lack_m` at the ends that are open, in turns; a view that sees past a place,
-  /// another tube, floor or wall stops it.
-  void Complete(PerceivedTube& tube, const Chain& chain, double lack_m) const {
-    const int end[2] = {chain.ends.front(), chain.ends.back() ^ 1};
-    bool open[2];
-    Vector3 p[2], t[2];
-    for (int k = 0; k < 2; ++k) {
-      const FragmentEnd& e = fragments_[static_cast<std::size_t>(end[k] / 2)].ends[end[k] % 2];
-      open[k] = e.cap < kClosed;
-      p[k] = e.p_N;
-      t[k] = e.outward_N;
-    }
-    Polyline added[2];
-    while (lack_m > 1e-6 && (open[0] || open[1])) {
-      for (int k = 0; k < 2 && lack_m > 1e-6; ++k) {
-        if (!open[k]) continue;
-        const double step = std::min(kNodeStep_m, lack_m);
-        const Vector3 next = p[k] + step * t[k];
-        open[k] = MayHide(next, chain);
-        if (!open[k]) continue;
-        p[k] = next;
-        added[k].push_back(next);
-        lack_m -= step;
-      }
-    }
-    std::reverse(added[0].begin(), added[0].end());
-    tube.centerline_N.insert(tube.centerline_N.begin(), added[0].begin(), added[0].end());
-    tube.node_visible.insert(tube.node_visible.begin(), added[0].size(), 0);
-    for (const Vector3& q : added[1]) Append(tube, q, false);
-  }
-
- private:
-  bool MayHide(const Vector3& p_N, const Chain& chain) const {
-    const Sight sight = space_.Look(p_N);
-    if (sight == Sight::kSurface || sight == Sight::kSeenThrough) return false;
-    if (!space_.FitsBin(p_N)) return false;
-    for (std::size_t f = 0; f < fragments_.size(); ++f) {
-      const bool own = std::any_of(chain.ends.begin(), chain.ends.end(),
-                                   [f](int e) { return static_cast<std::size_t>(e / 2) == f; });
-      if (own) continue;
-      if (Closest(fragments_[f].line_N, p_N).distance_m < kClearance * space_.radius_m()) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  const std::vector<Fragment>& fragments_;
-  const HiddenSpace& space_;
-};
+/// Prolongs a tube's open ends by `lack_m` in all, evenly as far as both have room, into what no
+/// view saw.
+void Complete(PerceivedTube& tube, const Chain& chain, const HiddenWays& ways, double lack_m) {
+  Polyline added[2] = {ways.Find(chain.ends.front(), lack_m, true),
+                       ways.Find(chain.ends.back() ^ 1, lack_m, true)};
+  const auto wanted = static_cast<std::size_t>(std::ceil(lack_m / kNodeStep_m - 1e-9));
+  // Both offer what is lacking, each takes its part; whole steps, the last one may be shorter.
+  const std::size_t first = std::min(
+      added[0].size(), std::max((wanted + 1) / 2, wanted - std::min(wanted, added[1].size())));
+  added[0].resize(first);
+  added[1].resize(std::min(added[1].size(), wanted - first));
+  std::reverse(added[0].begin(), added[0].end());
+  tube.centerline_N.insert(tube.centerline_N.begin(), added[0].begin(), added[0].end());
+  tube.node_visible.insert(tube.node_visible.begin(), added[0].size(), 0);
+  for (const Vector3& q : added[1]) Append(tube, q, false);
+}
 
 /// 0..1 from how well the pieces fit, how much better this way to join them is than the next best,
 /// joints that are unlikely in themselves, how much was seen, and how far the length is from the
@@ -172,6 +130,7 @@ std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
            *std::min_element(b->ends.begin(), b->ends.end());
   });
   const double least_m = std::max(kLeastSeen * tube_length_m, kLeastSeenRadii * space.radius_m());
+  const HiddenWays ways(fragments, space);
   std::vector<PerceivedTube> out;
   for (const Chain* chain : order) {
     PerceivedTube tube = Concatenate(*chain, fragments, bridges);
@@ -180,7 +139,7 @@ std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
     if (HasOtherRadius(*chain, fragments, space.radius_m())) continue;
     if (!TouchesBin(tube.centerline_N, bin)) continue;
     const double lack_m = tube_length_m - chain->length_m;
-    if (lack_m > kLack_m) Completion(fragments, space).Complete(tube, *chain, lack_m);
+    if (lack_m > kLack_m) Complete(tube, *chain, ways, lack_m);
     tube.id = static_cast<int>(out.size());
     tube.radius_m = space.radius_m();
     tube.length_m = Length(tube.centerline_N);

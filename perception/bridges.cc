@@ -32,8 +32,6 @@ constexpr double kLongGapUnit_m = 0.1;
 /// Cost of a way that no view confirms to be hidden, and of leaving through a closed end.
 constexpr double kUnconfirmed = 0.7;
 constexpr double kClosedEnd = 3.0;
-/// An end with this much of a cap seen hides nothing behind it.
-constexpr double kClosedCap = 0.5;
 /// Costs beyond this are no explanation.
 constexpr double kDearest = 8.0;
 /// Ends closer than this (in radii) belong to one tube, whatever they look like: axes of two tubes
@@ -175,32 +173,6 @@ std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const Hi
       if (i / 2 == k / 2) continue;
       auto bridge = BestWay(fragments, lines, i, k, space, longest_m);
       if (bridge) out.push_back(std::move(*bridge));
-    }
-  }
-  return out;
-}
-
-std::vector<double> MeasureRooms(const std::vector<Fragment>& fragments, const HiddenSpace& space,
-                                 double longest_m) {
-  NearLines lines;
-  for (const Fragment& fragment : fragments) lines.Add(fragment.line_N);
-  const double r = space.radius_m();
-  std::vector<double> out;
-  for (std::size_t f = 0; f < fragments.size(); ++f) {
-    for (const FragmentEnd& end : fragments[f].ends) {
-      double room_m = 0.0;
-      int denied = 0;
-      const int steps = end.cap < kClosedCap ? static_cast<int>(longest_m / kNodeStep_m) : 0;
-      for (int k = 1; k <= steps && denied < 2; ++k) {
-        const Vector3 p = end.p_N + k * kNodeStep_m * end.outward_N;
-        if (!space.FitsBin(p)) break;
-        if (lines.Distance(p, 2 * r, static_cast<int>(f)) < kClosestRadii * r) break;
-        const Sight sight = space.Look(p);
-        const bool seen = sight == Sight::kSeenThrough || sight == Sight::kSurface;
-        denied = seen ? denied + 1 : 0;
-        if (!seen) room_m = k * kNodeStep_m;
-      }
-      out.push_back(room_m);
     }
   }
   return out;

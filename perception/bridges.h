@@ -44,9 +44,4 @@ struct Bridge {
 std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const HiddenSpace& space,
                                 double longest_m);
 
-/// How far every end (2 * fragment + end) could go straight on without being seen, through another
-/// fragment or out of the bin: 0 for a closed end or one that stops in plain sight.
-std::vector<double> MeasureRooms(const std::vector<Fragment>& fragments, const HiddenSpace& space,
-                                 double longest_m);
-
 }  // namespace tubetwin

@@ -44,6 +44,32 @@ Vector3 OutwardTangent(const Polyline& line, int end, double window_m) {
                   : (line.back() - PointAt(line, length - s)).normalized();
 }
 
+/// Tangent and curvature at an end from the parabola through its last nodes: a chord would lag
+/// behind a bend by half its length.
+void FitEnd(const Polyline& line, int end, FragmentEnd& out) {
+  constexpr std::size_t kNodes = 7;
+  constexpr std::size_t kFewestForParabola = 5;
+  const std::size_t n = std::min(line.size(), kNodes);
+  out.outward_N = OutwardTangent(line, end, 0.02);
+  if (n < kFewestForParabola) return;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d right = Eigen::Matrix3d::Zero();  // Row per power, column per coordinate.
+  double s = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const Vector3& p = end == 0 ? line[k] : line[line.size() - 1 - k];
+    const Vector3& before = k == 0 ? p : end == 0 ? line[k - 1] : line[line.size() - k];
+    s += (p - before).norm();
+    const Vector3 powers(1.0, s, s * s);
+    normal += powers * powers.transpose();
+    right += powers * (p - out.p_N).transpose();
+  }
+  const Eigen::Matrix3d fit = normal.ldlt().solve(right);
+  // Arc length runs inwards.
+  out.outward_N = -fit.row(1).transpose().normalized();
+  const Vector3 bend = 2.0 * fit.row(2).transpose();
+  out.bend_N = bend - bend.dot(out.outward_N) * out.outward_N;
+}
+
 /// Moves an end node to where the axis points near it end: slices stop half a slice short.
 void StretchEnd(Polyline& line, int end, const std::vector<SurfacePoint>& points) {
   constexpr double kNear_m = 0.010;
@@ -126,7 +152,7 @@ Fragment FitTrace(const Trace& trace, const std::vector<SurfacePoint>& points,
   for (int end = 0; end < 2; ++end) {
     FragmentEnd& e = out.ends[static_cast<std::size_t>(end)];
     e.p_N = end == 0 ? line.front() : line.back();
-    e.outward_N = OutwardTangent(line, end, 0.02);
+    FitEnd(line, end, e);
     e.cap = CapEvidence(e, points, chosen, r);
   }
   return out;

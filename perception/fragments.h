@@ -15,8 +15,9 @@ inline constexpr double kNodeStep_m = 0.005;
 struct FragmentEnd {
   Vector3 p_N = Vector3::Zero();
   Vector3 outward_N = Vector3::UnitX();  ///< Unit tangent, out of the fragment.
-  double cap =
-      0.0;  ///< 0..1: how much of a closed end (points whose normal looks outward) is seen.
+  /// 0..1: how much of a closed end (points whose normal looks outward) is seen.
+  double cap = 0.0;
+  Vector3 bend_N = Vector3::Zero();  ///< Curvature (1/m): what the tangent gains on the way out.
 };
 
 /// A piece of one tube that was seen without interruption.

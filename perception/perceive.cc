@@ -8,6 +8,7 @@
 #include "perception/bridges.h"
 #include "perception/coverage.h"
 #include "perception/fragments.h"
+#include "perception/hidden_way.h"
 #include "perception/joining.h"
 #include "perception/leao2020/modelling.h"
 #include "perception/radius.h"
