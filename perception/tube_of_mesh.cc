@@ -99,7 +99,7 @@ MeshTube Measure(const Mesh& mesh, const Polyline& line, double radius_m) {
   }
   if (corners.empty() || samples.empty()) return tube;
   tube.radius_m = Quantile(corners, 0.5);
-  tube.radius_spread = (Quantile(samples, 0.95) - Quantile(samples, 0.05)) / tube.radius_m;
+  tube.radius_spread = (Quantile(samples, 0.90) - Quantile(samples, 0.10)) / tube.radius_m;
   for (const auto& [rho, area] : samples) {
     squares += (rho - tube.radius_m) * (rho - tube.radius_m);
     tube.max_m = std::max(tube.max_m, std::abs(rho - tube.radius_m));
@@ -119,13 +119,20 @@ double ShareOutside(const Mesh& mesh, const MeshTube& tube) {
   return static_cast<double>(outside) / kSamples;
 }
 
-/// Whether an end lies within the tube's own material elsewhere.
-bool MeetsItself(const MeshTube& tube) {
-  const double away_m = kShortest * tube.radius_m;
-  return Closest(SubLine(tube.line, away_m, tube.length_m), tube.line.front()).distance_m <
-             tube.radius_m ||
-         Closest(SubLine(tube.line, 0.0, tube.length_m - away_m), tube.line.back()).distance_m <
-             tube.radius_m;
+/// Whether an end runs on into the tube elsewhere: the axis of a ring goes on over its own start.
+/// That a tube touches itself makes no ring.
+bool RunsIntoItself(const MeshTube& tube) {
+  constexpr double kParallel = 0.9;
+  const double away_m = kShortest * tube.radius_m, window_m = tube.radius_m;
+  const auto runs_on = [&](const Polyline& rest, const Vector3& end, const Vector3& tangent) {
+    const ClosestOnLine foot = Closest(rest, end);
+    return foot.distance_m < 0.5 * tube.radius_m &&
+           std::abs(TangentAt(rest, foot.s_m, window_m).dot(tangent)) > kParallel;
+  };
+  return runs_on(SubLine(tube.line, away_m, tube.length_m), tube.line.front(),
+                 TangentAt(tube.line, 0.0, window_m)) ||
+         runs_on(SubLine(tube.line, 0.0, tube.length_m - away_m), tube.line.back(),
+                 TangentAt(tube.line, tube.length_m, window_m));
 }
 
 MeshTube Judge(MeshTube tube, const std::vector<Polyline>& axes, const std::vector<Mesh>& pieces) {
@@ -145,7 +152,7 @@ MeshTube Judge(MeshTube tube, const std::vector<Polyline>& axes, const std::vect
   } else if (tube.length_m < kShortest * r) {
     refuse(MeshVerdict::kNoAxis, "its axis is " + Mm(tube.length_m) + " long at a radius of " +
                                      Mm(r) + "; a tube is at least four radii long");
-  } else if (MeetsItself(tube)) {
+  } else if (RunsIntoItself(tube)) {
     refuse(MeshVerdict::kClosed, "it is a ring; a tube has two ends");
   } else if (const double outside = ShareOutside(pieces.front(), tube); outside > kMostOutside) {
     refuse(MeshVerdict::kOtherSurface, Percent(outside) +

@@ -32,7 +32,7 @@ struct MeshTube {
   double radius_m = 0.0;        ///< Outer: median distance of the mesh's corners from the axis.
   double rms_m = 0.0;           ///< Of the outer wall's distance from the tube, facets included.
   double max_m = 0.0;           ///< Largest of these distances.
-  double radius_spread = 0.0;   ///< (95th - 5th percentile of the radius) / median.
+  double radius_spread = 0.0;   ///< (90th - 10th percentile of the radius) / median.
   bool hollow = false;          ///< An inner wall was seen; it is not part of the fit.
   std::vector<MeshPoint> wall;  ///< Samples of the outer wall.
 };

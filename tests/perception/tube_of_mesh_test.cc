@@ -85,6 +85,17 @@ TEST_CASE("How a file winds its faces and what lies in a tube do not matter", "[
   CHECK(FindTubeOfMesh(MakeTubeMesh(kStraight, 0.01, loose), Parallelism{}).length_m > 0.0);
 }
 
+TEST_CASE("A tube that crosses its own end is no ring", "[perception]") {
+  // A loop of 60 mm whose end passes through the straight piece that it began with.
+  Polyline line = {Vector3(-0.15, 0, 0)};
+  for (int i = 0; i <= 48; ++i) {
+    const double angle = 1.5 * kPi * i / 48;
+    line.push_back(0.06 * Vector3(std::sin(angle), 1.0 - std::cos(angle), 0));
+  }
+  line.push_back(Vector3(-0.06, 0, 0));
+  CheckTube(MakeTubeMesh(line, 0.01), line, 0.01);
+}
+
 TEST_CASE("A hollow tube is called hollow, a full one is not", "[perception]") {
   TubeMeshOptions hollow;
   hollow.bore_m = 0.008;
