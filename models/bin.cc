@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/text.h"
 
 namespace tubetwin {

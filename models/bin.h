@@ -4,7 +4,7 @@
 
 #include "hw_bridge/base/config.h"
 #include "hw_bridge/base/frames.h"
-#include "hw_bridge/base/json.h"
+#include "hw_bridge/base/json_fwd.h"
 
 namespace tubetwin {
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 
 namespace tubetwin {
 

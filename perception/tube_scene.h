@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/json.h"
+#include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/base/polyline.h"
 
 namespace tubetwin {

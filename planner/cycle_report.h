@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/json.h"
 #include "perception/tube_scene.h"
 #include "planner/detection.h"
 #include "planner/plan.h"

@@ -1,5 +1,7 @@
 #include "planner/motion_types.h"
 
+#include "hw_bridge/base/json.h"
+
 namespace tubetwin {
 
 const char* ToString(CandidateScore::Status status) {

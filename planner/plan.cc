@@ -1,5 +1,7 @@
 #include "planner/plan.h"
 
+#include "hw_bridge/base/json.h"
+
 namespace tubetwin {
 
 void PlannerConfig::Visit(ConfigVisitor& v) {

@@ -7,11 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "hw_bridge/base/frames.h"
+#include "hw_bridge/base/json_fwd.h"
 
 namespace tubetwin {
-
-/// Keeps the order in which keys were added: files read like their description.
-using Json = nlohmann::ordered_json;
 
 /// Parses a file. Throws Error(kMissing) or Error(kBadData) naming file and byte.
 Json ReadJsonFile(const std::string& path);

@@ -1,3 +1,4 @@
+#include "hw_bridge/base/json.h"
 #include "models/part.h"
 
 #include <filesystem>

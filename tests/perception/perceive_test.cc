@@ -1,3 +1,4 @@
+#include "hw_bridge/base/json.h"
 #include "perception/perceive.h"
 
 #include "hw_bridge/base/error.h"

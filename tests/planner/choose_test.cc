@@ -1,3 +1,4 @@
+#include "hw_bridge/base/json.h"
 #include "planner/choose.h"
 
 #include "planner/points.h"

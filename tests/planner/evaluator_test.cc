@@ -1,3 +1,4 @@
+#include "hw_bridge/base/json.h"
 #include "planner/evaluator/evaluator.h"
 
 #include <algorithm>

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/parallel.h"
 #include "perception/tube_scene.h"
 #include "scenes/pile.h"

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/text.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/app/common.h"

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/text.h"
 #include "twin/app/common.h"
 #include "twin/render/pile_picture.h"
