@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/text.h"
 
 namespace tubetwin {

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "hw_bridge/base/config.h"
-#include "hw_bridge/base/json.h"
+#include "hw_bridge/base/json_fwd.h"
 
 namespace tubetwin {
 

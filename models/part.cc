@@ -6,6 +6,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/frames.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/text.h"
 #include "models/embedded.h"
 #include "models/json_visitor.h"

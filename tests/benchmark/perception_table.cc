@@ -20,6 +20,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "models/layout.h"
 #include "models/physics.h"
 #include "perception/graph_metrics.h"

@@ -1,4 +1,5 @@
 #include "twin/campaign/campaign.h"
+#include "hw_bridge/base/json.h"
 
 #include <fstream>
 

@@ -12,6 +12,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/random.h"
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/merge.h"

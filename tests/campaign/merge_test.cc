@@ -1,4 +1,5 @@
 #include "twin/campaign/merge.h"
+#include "hw_bridge/base/json.h"
 
 #include <cmath>
 #include <filesystem>

@@ -1,4 +1,5 @@
 #include "twin/campaign/report_html.h"
+#include "hw_bridge/base/json.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,10 +1,10 @@
-#include "hw_bridge/base/json.h"
 #include "models/part.h"
 
 #include <filesystem>
 #include <fstream>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "models/bin.h"
 #include "models/physics.h"
 #include "tests/support/catch.h"

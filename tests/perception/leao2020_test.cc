@@ -1,4 +1,5 @@
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "perception/leao2020/modelling.h"
 #include "perception/leao2020/tubes.h"
 #include "perception/metrics.h"

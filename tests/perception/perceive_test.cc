@@ -1,7 +1,7 @@
-#include "hw_bridge/base/json.h"
 #include "perception/perceive.h"
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "perception/metrics.h"
 #include "tests/support/catch.h"
 #include "tests/support/toy_scanner.h"

@@ -1,7 +1,7 @@
-#include "hw_bridge/base/json.h"
 #include "perception/tube_scene.h"
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

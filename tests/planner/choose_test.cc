@@ -1,6 +1,6 @@
-#include "hw_bridge/base/json.h"
 #include "planner/choose.h"
 
+#include "hw_bridge/base/json.h"
 #include "planner/points.h"
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"

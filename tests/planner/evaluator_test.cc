@@ -1,10 +1,10 @@
-#include "hw_bridge/base/json.h"
 #include "planner/evaluator/evaluator.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "models/part.h"
 #include "planner/evaluator/rollout.h"
 #include "planner/motions.h"

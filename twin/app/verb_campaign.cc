@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "twin/app/common.h"
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/campaign_status.h"

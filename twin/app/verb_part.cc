@@ -7,6 +7,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/text.h"
 #include "models/gripper_spec.h"
 #include "models/mesh.h"

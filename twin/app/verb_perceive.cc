@@ -6,6 +6,7 @@
 
 #include "hw_bridge/base/cloud.h"
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/text.h"
 #include "perception/floor_pose.h"
 #include "perception/label_points.h"

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "twin/app/common.h"
 #include "twin/render/perceived_picture.h"
 #include "twin/render/pile_picture.h"

@@ -6,6 +6,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/random.h"
 #include "hw_bridge/base/text.h"
 #include "scenes/engine/engine_error.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/json.h"
+#include "hw_bridge/base/json_fwd.h"
 #include "models/part.h"
 #include "twin/campaign/scenario.h"
 

@@ -10,6 +10,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "twin/campaign/scoring.h"
 #include "twin/campaign/shard_file.h"
 #include "twin/campaign/wilson.h"

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "twin/campaign/attempt_facts.h"
 #include "twin/campaign/scoring.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hw_bridge/base/json.h"
+#include "hw_bridge/base/json_fwd.h"
 #include "twin/campaign/merge.h"
 #include "twin/campaign/statistics.h"
 

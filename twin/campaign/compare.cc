@@ -5,6 +5,7 @@
 #include <map>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "twin/campaign/attempt_facts.h"
 #include "twin/campaign/campaign_summary.h"
 

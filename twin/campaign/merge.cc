@@ -7,6 +7,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/campaign_summary.h"
 #include "twin/campaign/result_files.h"

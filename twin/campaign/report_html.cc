@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "twin/campaign/report_chart.h"
 #include "twin/campaign/wilson.h"
 

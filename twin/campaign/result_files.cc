@@ -9,6 +9,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "scenes/engine/engine_error.h"
 
 namespace tubetwin {

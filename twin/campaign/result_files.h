@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/json.h"
+#include "hw_bridge/base/json_fwd.h"
 #include "twin/campaign/scenario.h"
 
 namespace tubetwin {

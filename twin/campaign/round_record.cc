@@ -2,6 +2,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "twin/campaign/campaign.h"
 
 namespace tubetwin {

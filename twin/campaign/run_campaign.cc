@@ -10,6 +10,7 @@
 #include <set>
 
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "twin/campaign/campaign_status.h"
 #include "twin/campaign/kept_rounds.h"
 #include "twin/campaign/scoring.h"
