@@ -35,6 +35,28 @@ std::vector<double> ViewOffsets(double extent_m, double field_m) {
   return offsets;
 }
 
+/// Looking straight down from (x, y), height `z`, all in B; or, when the projector stands beyond
+/// the bin's wall at `wall_x` and that wall's shadow could hide a tube, from inside the bin, tilted
+/// outward: then the projector is inside too and lights the floor up to the wall.
+RigidTransform LookFrom(double x, double y, double z, double wall_x, double wall_m,
+                        double floor_z) {
+  // A narrower shadow hides no tube: the thinnest, 20 mm, rises out of it.
+  constexpr double kMostShadow_m = 0.022;
+  // Just enough that the wall is still seen up to kCovered_m, as from the place straight above.
+  const double tilt = Radians(10.0);
+  constexpr double kInside_m = 0.004;
+  const ScannerSpec spec;
+  const double toe_in = Radians(spec.toe_in_deg);
+  const Vector3 p_SP = spec.baseline_m * Vector3(std::cos(toe_in), 0, std::sin(toe_in));
+  const Matrix3 down = RotX(kPi);  // image x along B's x
+  const Vector3 p_BP = Vector3(x, y, z) + down * p_SP;
+  const double rim_z = floor_z + wall_m;
+  const double shadow_m = wall_m * (p_BP.x() - wall_x) / (p_BP.z() - rim_z);
+  if (shadow_m < kMostShadow_m) return MakeTransform(down, Vector3(x, y, z));
+  const Matrix3 tilted = RotY(-tilt) * down;
+  return MakeTransform(tilted, Vector3(wall_x - kInside_m - (tilted * p_SP).x(), y, z));
+}
+
 }  // namespace
 
 std::vector<RigidTransform> DefaultScanPoses(const Bin& bin) {
@@ -51,15 +73,16 @@ std::vector<RigidTransform> DefaultScanPoses(const Bin& bin) {
   const Matrix3 R_BN = bin.X_BN.linear().cwiseAbs();
   const double extent_x_m = R_BN(0, 0) * bin.size_m[0] + R_BN(0, 1) * bin.size_m[1];
   const double extent_y_m = R_BN(1, 0) * bin.size_m[0] + R_BN(1, 1) * bin.size_m[1];
-  const Matrix3 R_BS = RotX(kPi);  // straight down, image x along B's x
   std::vector<RigidTransform> X_BS;
   bool forward = true;
+  const Vector3& p_BN = bin.X_BN.translation();
   for (const double x : ViewOffsets(extent_x_m, field_x_m)) {
     auto row = ViewOffsets(extent_y_m, field_y_m);
     if (!forward) std::reverse(row.begin(), row.end());  // to and fro: the shortest way
     forward = !forward;
     for (const double y : row) {
-      X_BS.push_back(MakeTransform(R_BS, bin.X_BN.translation() + Vector3(x, y, height_m)));
+      X_BS.push_back(LookFrom(p_BN.x() + x, p_BN.y() + y, p_BN.z() + height_m,
+                              p_BN.x() + 0.5 * extent_x_m, bin.wall_m(), p_BN.z()));
     }
   }
   return X_BS;

@@ -32,8 +32,9 @@ struct CellLayout {
   double carry_height_m = 0.45;
 };
 
-/// One place to scan from: scanner pose in B, camera looking straight down, image x along B's x.
-/// The long image side lies along B's x.
+/// The places to scan from: scanner poses in B, camera looking straight down, the long image side
+/// along B's x. Where the projector would stand beyond a wall so high that its shadow could hide a
+/// tube, the scanner looks from inside that wall, tilted outward.
 std::vector<RigidTransform> DefaultScanPoses(const Bin& bin);
 
 /// Masses below the sensor's tool face, for the tare and for payload. kg, position in K.

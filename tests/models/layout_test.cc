@@ -1,5 +1,7 @@
 #include "models/layout.h"
 
+#include <cmath>
+
 #include "models/arm.h"
 #include "models/gripper_spec.h"
 #include "models/scanner_spec.h"
@@ -58,6 +60,39 @@ TEST_CASE("The scans cover the floor and everything up to 0.13 m over it", "[uni
   CheckCoverage(Bin{{0.40, 0.30, 0.09}, DefaultBinPose()});
   CheckCoverage(Bin{{0.70, 0.62, 0.09}, Translation(0.62, 0.05, 0.10)});
   CheckCoverage(Bin{{0.77, 0.58, 0.09}, MakeTransform(RotZ(1.2), Vector3(0.6, 0.0, 0.12))});
+}
+
+/// Whether no wall stands between the projector at X_BS and a place in the bin.
+bool Lit(const RigidTransform& X_BS, const Bin& bin, const Vector3& p_N) {
+  const ScannerSpec spec;
+  const double toe_in = Radians(spec.toe_in_deg);
+  const Vector3 p_NP = bin.X_BN.inverse() * X_BS *
+                       (spec.baseline_m * Vector3(std::cos(toe_in), 0, std::sin(toe_in)));
+  const double share = (bin.wall_m() - p_N.z()) / (p_NP.z() - p_N.z());
+  const Vector3 at_rim_N = p_N + share * (p_NP - p_N);
+  return std::abs(at_rim_N.x()) <= bin.half_x_m() && std::abs(at_rim_N.y()) <= bin.half_y_m();
+}
+
+TEST_CASE("A tube's flank is seen and lit wherever it lies, also beside a high wall", "[unit]") {
+  for (const Bin& bin :
+       {Bin(), Bin{{0.80, 0.60, 0.20}, DefaultBinPose()}, Bin{{0.80, 0.60, 0.13}, DefaultBinPose()},
+        Bin{{0.60, 0.40, 0.20}, DefaultBinPose()}}) {
+    const auto views = DefaultScanPoses(bin);
+    int dark = 0;
+    constexpr int kSteps = 40;
+    constexpr double kDiameter_m = 0.020;  // Of the thinnest tube.
+    for (int i = 0; i <= kSteps; ++i) {
+      for (int j = 0; j <= kSteps; ++j) {
+        const Vector3 p_N((bin.half_x_m() - kDiameter_m) * (2.0 * i / kSteps - 1),
+                          (bin.half_y_m() - kDiameter_m) * (2.0 * j / kSteps - 1), 0.005);
+        dark += std::none_of(views.begin(), views.end(), [&](const RigidTransform& X_BS) {
+          return Sees(X_BS, bin.X_BN * p_N) && Lit(X_BS, bin, p_N);
+        });
+      }
+    }
+    INFO(bin.size_m[0] << " x " << bin.size_m[1] << " x " << bin.size_m[2]);
+    CHECK(dark == 0);
+  }
 }
 
 TEST_CASE("Every scan pose is reached in the working family well inside the limits", "[unit]") {

@@ -214,18 +214,7 @@ std::vector<OrganizedCloud> ScanBinCase(const BinCase& c, int width, Parallelism
   settings.noise_scale = c.noise_scale;
   const ScanGeometry geometry = GeometryOf(c);
   std::vector<OrganizedCloud> out;
-  std::vector<RigidTransform> poses_BS = DefaultScanPoses(c.bin);
-  // The projector stands on the image's +x side: high walls there shade the floor from the rows
-  // next to them, which are therefore taken the other way round as well.
-  constexpr double kHighWall_m = 0.095;
-  if (c.bin.wall_m() > kHighWall_m) {
-    const double middle_m = c.bin.X_BN.translation().x();
-    for (const RigidTransform& X_BS : DefaultScanPoses(c.bin)) {
-      if (X_BS.translation().x() > middle_m)
-        poses_BS.push_back(X_BS * MakeTransform(RotZ(kPi), {0, 0, 0}));
-    }
-  }
-  for (const RigidTransform& X_BS : poses_BS) {
+  for (const RigidTransform& X_BS : DefaultScanPoses(c.bin)) {
     out.push_back(CastScan(geometry, X_BS * c.X_SbelievedS, settings,
                            RandomStream(c.seed, out.size(), "bin case scan"), parallelism));
     out.back().X_NS = c.bin.X_BN.inverse() * X_BS;
