@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +16,8 @@
 #include "twin/campaign/compare.h"
 #include "twin/campaign/kept_rounds.h"
 #include "twin/campaign/merge.h"
+#include "twin/campaign/report_campaign.h"
+#include "twin/campaign/report_round.h"
 #include "twin/campaign/run_campaign.h"
 
 namespace tubetwin {
@@ -27,7 +30,7 @@ struct CampaignOptions {
   std::optional<int> shards;
   int jobs = 0;
   double grace_s = 20.0;
-  std::vector<std::string> folders;
+  std::vector<std::string> folders, kept;
 };
 
 /// "90", "90s", "30m", "8h" in seconds.
@@ -125,6 +128,23 @@ int MergeVerb(const CampaignOptions& given, const Common& common) {
   return 0;
 }
 
+int ReportVerb(const CampaignOptions& given, const Common& common) {
+  namespace fs = std::filesystem;
+  const fs::path folder(given.folders.front());
+  const std::string file = common.out.empty() ? (folder / "report.html").string() : common.out;
+  // A folder of one round has no campaign.json, but a summary.
+  const bool is_round =
+      !fs::exists(folder / "campaign.json") && fs::exists(folder / "summary.json");
+  const std::size_t bytes = is_round ? WriteRoundReport(folder.string(), file, /*timings=*/true)
+                                     : WriteCampaignReport(folder.string(), given.kept, file);
+  if (common.json) {
+    std::printf("%s\n", Json{{"file", file}, {"bytes", bytes}}.dump(2).c_str());
+  } else {
+    std::printf("%s\n", file.c_str());
+  }
+  return 0;
+}
+
 int CompareVerb(const CampaignOptions& given, const Common& common) {
   std::vector<CampaignResult> results;
   for (const std::string& folder : given.folders) results.push_back(ReadCampaignResult(folder));
@@ -199,6 +219,25 @@ void AddReaders(CLI::App& campaign, Common& common) {
   merge->callback([merged, &common] {
     common.action = [merged, &common] { return MergeVerb(*merged, common); };
   });
+
+  auto page = std::make_shared<CampaignOptions>();
+  CLI::App* report = campaign.add_subcommand(
+      "report",
+      "Example: tubetwin campaign report out/c\n\n"
+      "Makes one page of a campaign's folder, merged or not, or of a round's result folder: "
+      "DIR/report.html, whole in itself. Unlike the page that `run` writes it tells computing "
+      "times too. Failed attempts that were kept are shown with picture, loads and a 3-D view.");
+  report->add_option("folder", page->folders, "Folder of the campaign or round")
+      ->required()
+      ->expected(1)
+      ->type_name("DIR");
+  report
+      ->add_option("--kept", page->kept,
+                   "Shards' folders with failures and samples, when DIR was merged from them")
+      ->type_name("DIR...");
+  AddCommonOptions(*report, common, "The page's file; default DIR/report.html", false);
+  report->callback(
+      [page, &common] { common.action = [page, &common] { return ReportVerb(*page, common); }; });
 
   auto pair = std::make_shared<CampaignOptions>();
   CLI::App* compare = campaign.add_subcommand(

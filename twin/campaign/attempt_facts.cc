@@ -11,6 +11,7 @@ std::string FailureOf(const AttemptFacts& facts, bool crashed) {
   if (facts.outside > 0) return "outside";
   if (facts.placed > 1) return "several_placed";
   const std::string outcome = (*facts.row)["outcome"];
+  if (outcome == "placed" && (*facts.row)["success"].is_null()) return "";  // No truth to doubt it.
   if (outcome == "placed") return "placed_none";
   return facts.placed == 1 ? "placed_unnoticed" : outcome;
 }

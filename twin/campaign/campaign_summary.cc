@@ -69,6 +69,39 @@ Json ByTubesLeft(const std::vector<std::vector<AttemptFacts>>& rounds, const Ran
   return out;
 }
 
+std::string MotionOf(const AttemptFacts& facts) {
+  const Json& row = *facts.row;
+  if (!row.contains("motion") || !row["motion"].is_object()) return "none";
+  return row["motion"]["name"];
+}
+
+/// Success by motion, most used first; "none" where there was no plan.
+Json ByMotion(const std::vector<std::vector<AttemptFacts>>& rounds, const RandomStream& random) {
+  std::map<std::string, int> uses;
+  for (const auto& round : rounds) {
+    for (const AttemptFacts& facts : round) ++uses[MotionOf(facts)];
+  }
+  Json out = Json::array();
+  const Json ranked = Ranked(uses);
+  for (const auto& [motion, count] : ranked.items()) {
+    const auto chosen = [&name = motion](const AttemptFacts& f) { return MotionOf(f) == name; };
+    std::vector<double> move_s;
+    for (const auto& round : rounds) {
+      for (const AttemptFacts& facts : round) {
+        const Json& times = (*facts.row)["sim_s"];
+        if (chosen(facts) && times.is_object()) move_s.push_back(times["move"]);
+      }
+    }
+    Json row;
+    row["motion"] = motion;
+    row["success"] = RateJson(ByRound(rounds, chosen, Success), random.Fork("motion", out.size()));
+    row["used_simulator"] = Total(ByRound(rounds, chosen, UsedSimulator)).k;
+    row["move_s"] = SpreadJson(move_s);
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
 /// What the pipeline believed against truth, attempts that ran to an end.
 Json BeliefTable(const std::vector<std::vector<AttemptFacts>>& rounds) {
   std::map<std::string, Counts> table;
@@ -164,6 +197,7 @@ Json ArmSummary(const CampaignResult& result, int arm, const RandomStream& rando
   out["first_attempt"] = RateJson(ByRound(rounds, Success, First), random.Fork("first"));
   out["emptied"] = RateJson(Emptied(records));
   out["by_tubes_left"] = ByTubesLeft(rounds, random);
+  out["by_motion"] = ByMotion(rounds, random);
   std::map<std::string, int> failures, ends;
   for (const auto& round : rounds) {
     for (const AttemptFacts& facts : round) {

@@ -25,12 +25,13 @@ Recording Cut(const Recording& whole, int from, int to) {
   return out;
 }
 
-/// Draws the films of a kept round. `ends`: frames at which each attempt ended.
-std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_attempts,
-                      const std::vector<int>& ends, bool whole, Parallelism parallelism) {
+/// Draws the films of a kept round.
+std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_attempts, bool whole,
+                      Parallelism parallelism) {
   const Recording recording = ReadRecording((folder / "recording.bin").string());
   try {
     for (const int attempt : failed_attempts) {
+      const std::vector<int>& ends = recording.attempt_ends;
       const int from = attempt == 0 ? 0 : ends[attempt - 1];
       const Recording part = Cut(recording, from, ends[attempt]);
       if (part.frames.empty()) continue;
@@ -116,9 +117,8 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
   fs::remove(work.parent_path(), ignored);
   if (campaign.keep.films) {
     if (!sampled && !task.keep_failure) failed.clear();
-    output.afterwards = [kept, failed, ends = std::move(result.attempt_end_frames), sampled,
-                         parallelism = options.parallelism] {
-      return DrawFilms(kept, failed, ends, sampled, parallelism);
+    output.afterwards = [kept, failed, sampled, parallelism = options.parallelism] {
+      return DrawFilms(kept, failed, sampled, parallelism);
     };
   }
   return output;

@@ -8,9 +8,10 @@
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
 #include "hw_bridge/base/json.h"
-#include "twin/campaign/report_html.h"
+#include "twin/campaign/report_round.h"
 #include "twin/campaign/result_files.h"
 #include "twin/campaign/scoring.h"
+#include "twin/campaign/thinned_points.h"
 #include "twin/cell/twin_cell.h"
 #include "twin/render/recording.h"
 
@@ -50,6 +51,9 @@ class RoundRecorder : public CycleObserver {
       if (plan != nullptr && scene.tubes[i].id == plan->target)
         overlay.target = static_cast<int>(i);
     }
+    if (options_.keep != RoundKeep::kRows) {
+      overlay.cloud_N = ThinnedPoints(last_views_, recording_.bin);
+    }
     recording_.overlays.push_back(std::move(overlay));
   }
 
@@ -65,7 +69,7 @@ class RoundRecorder : public CycleObserver {
     const double now = WallNow();
     timings.push_back(RoundScorer::TimingRow(report, 0, now - attempt_began_));
     attempt_began_ = now;
-    attempt_end_frames.push_back(static_cast<int>(recording_.frames.size()));
+    recording_.attempt_ends.push_back(static_cast<int>(recording_.frames.size()));
     if (options_.keep != RoundKeep::kRows && !rows.back()["success"].get<bool>()) SaveFailure();
     recording_.overlays.push_back({});  // What was seen is stale now.
   }
@@ -81,7 +85,6 @@ class RoundRecorder : public CycleObserver {
   }
 
   std::vector<Json> rows, timings;
-  std::vector<int> attempt_end_frames;
 
  private:
   void AddFrame() {
@@ -142,7 +145,7 @@ Pile StartPile(const Scenario& scenario, const Pile& asked, const RoundPhysics& 
 }
 
 /// Recording, film and report.
-void WriteRecord(const Json& summary, const RoundRecorder& recorder, const RoundOptions& options) {
+void WriteRecord(const RoundRecorder& recorder, const RoundOptions& options) {
   const fs::path out(options.out_folder);
   WriteRecording(recorder.recording(), (out / "recording.bin").string());
   if (options.video) {
@@ -150,7 +153,7 @@ void WriteRecord(const Json& summary, const RoundRecorder& recorder, const Round
     RenderPicture(recorder.recording(), 0, (out / "picture.png").string());
     RenderFilm(recorder.recording(), (out / "video.mp4").string(), 1, options.parallelism);
   }
-  WriteReport(summary, recorder.rows, options.out_folder);
+  WriteRoundReport(options.out_folder, (out / "report.html").string(), /*timings=*/false);
 }
 
 }  // namespace
@@ -205,14 +208,13 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   const double cycle_wall_s = WallNow() - began;
   if (options.keep == RoundKeep::kAll ||
       (options.keep == RoundKeep::kFailures && recorder.AnyFailure())) {
-    WriteRecord(result.summary, recorder, options);
+    WriteRecord(recorder, options);
   }
   WriteJsonFile(Manifest(scenario, resolved, options.program_version, options.parallelism.threads,
                          cycle_wall_s),
                 (out / "manifest.json").string());
   result.rows = std::move(recorder.rows);
   result.timings = std::move(recorder.timings);
-  result.attempt_end_frames = std::move(recorder.attempt_end_frames);
   return result;
 }
 

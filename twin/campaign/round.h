@@ -32,9 +32,8 @@ struct RoundOptions {
 
 /// What a round came to.
 struct RoundResult {
-  Json summary;                         ///< Content of summary.json.
-  std::vector<Json> rows, timings;      ///< Of picks.jsonl and timings.jsonl.
-  std::vector<int> attempt_end_frames;  ///< How many frames were recorded when each row was made.
+  Json summary;                     ///< Content of summary.json.
+  std::vector<Json> rows, timings;  ///< Of picks.jsonl and timings.jsonl.
   bool interrupted = false;
 };
 

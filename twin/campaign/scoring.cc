@@ -123,6 +123,9 @@ Json RoundScorer::Summary(const RoundReport& report, double sim_s) const {
   out["tubes_start"] = tubes_start_;
   out["placed"] = placed;
   out["attempts"] = attempts_;
+  const auto success = Wilson95(successes_, attempts_);
+  out["success"] = Json{
+      {"k", successes_}, {"n", attempts_}, {"wilson95", Json::array({success.low, success.high})}};
   out["first_attempt"] = Json{{"k", first_attempts_placed_},
                               {"n", picks_placed_},
                               {"wilson95", Json::array({interval.low, interval.high})}};
@@ -165,6 +168,8 @@ Json FaultSummary(int tubes_start, const std::string& reason) {
   out["tubes_start"] = tubes_start;
   out["placed"] = 0;
   out["attempts"] = 1;
+  const auto success = Wilson95(0, 1);
+  out["success"] = Json{{"k", 0}, {"n", 1}, {"wilson95", Json::array({success.low, success.high})}};
   out["first_attempt"] = Json{{"k", 0}, {"n", 0}, {"wilson95", Json::array({0.0, 1.0})}};
   out["emptied"] = false;
   out["end_reason"] = kCrashed;

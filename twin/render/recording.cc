@@ -58,13 +58,25 @@ Recording::Visual ReadVisual(const JsonView& view) {
   return visual;
 }
 
+constexpr double kCloudStep_m = 1e-4;
+
+Json CloudToJson(const std::vector<Vector3>& cloud_N) {
+  Json steps = Json::array();
+  for (const Vector3& p : cloud_N) {
+    for (int k = 0; k < 3; ++k) steps.push_back(std::lround(p[k] / kCloudStep_m));
+  }
+  return steps;
+}
+
 Json Head(const Recording& recording, std::size_t nq) {
   Json overlays = Json::array();
   for (const Recording::Overlay& overlay : recording.overlays) {
     Json lines = Json::array();
     for (const Polyline& line : overlay.lines_N) lines.push_back(ToJson(line));
-    overlays.push_back(
-        {{"lines_m", lines}, {"classes", overlay.classes}, {"target", overlay.target}});
+    overlays.push_back({{"lines_m", lines},
+                        {"classes", overlay.classes},
+                        {"target", overlay.target},
+                        {"cloud_tenth_mm", CloudToJson(overlay.cloud_N)}});
   }
   Json visuals = Json::array();
   for (const Recording::Visual& visual : recording.visuals) visuals.push_back(VisualToJson(visual));
@@ -73,6 +85,7 @@ Json Head(const Recording& recording, std::size_t nq) {
           {"bin", ToJson(recording.bin)},
           {"nq", nq},
           {"frames", recording.frames.size()},
+          {"attempt_ends", recording.attempt_ends},
           {"captions", recording.captions},
           {"overlays", overlays},
           {"visuals", visuals},
@@ -123,6 +136,12 @@ Recording::Overlay ReadOverlay(const JsonView& view) {
   const JsonView target = view.Field("target");
   const double last = static_cast<double>(lines.Size()) - 1.0;
   overlay.target = static_cast<int>(target.AsNumber(-1.0, last));
+  if (const auto cloud = view.Optional("cloud_tenth_mm")) {
+    const std::vector<double> steps = cloud->AsNumbers();
+    for (std::size_t i = 0; i + 2 < steps.size(); i += 3) {
+      overlay.cloud_N.push_back(kCloudStep_m * Vector3(steps[i], steps[i + 1], steps[i + 2]));
+    }
+  }
   return overlay;
 }
 
@@ -211,6 +230,13 @@ Recording ReadRecording(const std::string& path) {
     throw Error(ErrorKind::kBadData, path + ": " + std::to_string(frames) + " frames of " +
                                          std::to_string(nq) + " coordinates do not fill the " +
                                          std::to_string(left) + " bytes that follow the head");
+  }
+  if (const auto ends = head.Optional("attempt_ends")) {
+    double before = 0.0;
+    for (std::size_t i = 0; i < ends->Size(); ++i) {
+      before = ends->Item(i).AsNumber(before, static_cast<double>(frames));
+      recording.attempt_ends.push_back(static_cast<int>(before));
+    }
   }
   const char* bytes = content.data() + head_size + 1;
   for (std::size_t i = 0; i < frames; ++i, bytes += kFrameHead + 4 * nq) {

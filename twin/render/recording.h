@@ -20,6 +20,8 @@ struct Recording {
     std::vector<Polyline> lines_N;
     std::vector<int> classes;  ///< Of each line: 0 free, 1 weak, 2 strong (TubeClass's order).
     int target = -1;           ///< Index in lines_N.
+    /// What the scanner saw, thinned for the eye; rounded to 0.1 mm in the file.
+    std::vector<Vector3> cloud_N;
   };
   struct Frame {
     std::vector<float> qpos;  ///< [nq] of the cell's model.
@@ -40,6 +42,7 @@ struct Recording {
   std::vector<Overlay> overlays;
   std::vector<std::string> captions;
   std::vector<Frame> frames;
+  std::vector<int> attempt_ends;  ///< How many frames there were when each attempt ended.
 };
 
 /// One zstd-compressed file: a JSON head, then the frames as raw floats.

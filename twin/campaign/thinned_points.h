@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "hw_bridge/base/cloud.h"
+#include "models/bin.h"
+
+namespace tubetwin {
+
+/// Points of all views in and over the bin (frame N) as few as a picture needs: one for each cell
+/// of a grid, the first that falls into it; cells are coarser on the floor, and coarser everywhere
+/// when there would be more than `most` points. Same clouds, same points.
+std::vector<Vector3> ThinnedPoints(const std::vector<OrganizedCloud>& views, const Bin& bin,
+                                   int most = 6000);
+
+}  // namespace tubetwin
