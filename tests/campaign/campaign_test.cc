@@ -88,6 +88,20 @@ set = {bin.size_m = [[0.77, 0.58, 0.09], [0.80, 0.60, 0.20]]}
   CHECK(bins.arms[1].scenario.bin.size_m[2] == 0.20);
 }
 
+TEST_CASE("a profile brings its own defaults under what the arm sets") {
+  const TemporaryFolder folder;
+  const Campaign campaign = Load(folder, R"(
+[[arm]]
+profile = ["best", "leao2020"]
+set = {resolution.strategy = "none"}
+)");
+  REQUIRE(campaign.arms.size() == 2);
+  CHECK(campaign.arms[1].scenario.profile == "leao2020");
+  CHECK(campaign.arms[1].scenario.perception.profile == "leao2020");
+  CHECK(campaign.arms[1].scenario.resolution.strategy == "none");
+  CHECK_THAT(campaign.arms[1].name, Contains("leao2020"));
+}
+
 TEST_CASE("overrides reach the campaign or every arm") {
   const TemporaryFolder folder;
   const Campaign campaign = Load(folder, "rounds = 3\n[[arm]]\ncount = 2\n[[arm]]\ncount = 3\n",

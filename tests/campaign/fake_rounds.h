@@ -28,7 +28,6 @@ inline Campaign FakeCampaign(int rounds, int arms = 1, std::int64_t seed = 1) {
   for (int i = 0; i < arms; ++i) {
     CampaignArm arm;
     arm.name = "arm " + std::to_string(i);
-    arm.scenario.seed = 0;
     arm.scenario.pile.count = 3 + i;
     arm.tubes = 3 + i;
     campaign.arms.push_back(arm);

@@ -89,12 +89,13 @@ void AddArms(ConfigSource table, const std::string& where,
   for (ConfigSource& point : grid) {
     for (const std::string& text : overrides) point.AddOverride(text);
     CampaignArm arm;
-    arm.scenario.seed = 0;
-    point.ReadInto(arm.scenario);
-    if (arm.scenario.seed != 0) {
-      throw Error(ErrorKind::kConfig, where +
-                                          ": set: seed: rounds of all arms share the seeds that "
-                                          "come from the campaign's; give it at the top");
+    arm.scenario = ReadScenario(point);
+    const auto texts = point.Texts();
+    if (std::any_of(texts.begin(), texts.end(), [](const auto& t) { return t.first == "seed"; })) {
+      throw Error(ErrorKind::kConfig,
+                  where +
+                      ": set: seed: rounds of all arms share the seeds that come from the "
+                      "campaign's; give it at the top");
     }
     ReadInputs(arm, campaign.folder);
     arm.name = ArmName(left.name, grid.size() == 1, point, arm);
