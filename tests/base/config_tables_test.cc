@@ -1,0 +1,113 @@
+#include "hw_bridge/base/config.h"
+#include "hw_bridge/base/error.h"
+#include "tests/support/catch.h"
+
+namespace tubetwin {
+namespace {
+
+using Catch::Matchers::Contains;
+
+struct Sample {
+  int views = 1;
+  std::string driver = "a";
+  std::vector<double> size_m = {1.0, 2.0};
+  struct Inner {
+    double share = 0.5;
+    void Visit(ConfigVisitor& v) { v.Field("share", "A share.", share, {0, 1}); }
+  } inner;
+  void Visit(ConfigVisitor& v) {
+    v.Field("views", "Views.", views, {1, 64});
+    v.Choice("driver", "Driver.", driver, {"a", "b"});
+    v.Field("size_m", "Size.", size_m);
+    v.Section("inner", "Inner.", inner);
+  }
+};
+
+ConfigSource Source(const std::string& toml) {
+  ConfigSource source;
+  source.AddText(toml, "f.toml");
+  return source;
+}
+
+std::vector<Sample> Expand(const std::string& toml) {
+  Sample any;
+  std::vector<Sample> out;
+  for (const ConfigSource& point :
+       Source(toml).ExpandLists([&any](ConfigVisitor& v) { any.Visit(v); })) {
+    point.ReadInto(out.emplace_back());
+  }
+  return out;
+}
+
+std::string Refusal(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& e) {
+    CHECK(e.kind() == ErrorKind::kConfig);
+    return e.what();
+  }
+  return "nothing was refused";
+}
+
+}  // namespace
+
+TEST_CASE("tables of a list become sources of their own and leave the rest") {
+  ConfigSource source = Source("views = 3\n[[one]]\nviews = 4\n[[one]]\nviews = 5\n");
+  const std::vector<ConfigSource> tables = source.TakeTables("one");
+  REQUIRE(tables.size() == 2);
+  Sample whole, second;
+  source.ReadInto(whole);  // An unknown key "one" would throw.
+  tables[1].ReadInto(second);
+  CHECK(whole.views == 3);
+  CHECK(second.views == 5);
+  CHECK(source.TakeTables("one").empty());
+  CHECK_THAT(Refusal([] { Source("one = 4\n").TakeTables("one"); }), Contains("f.toml:1:1: one"));
+}
+
+TEST_CASE("a table's keys may be written with dots, in quotes or as tables") {
+  ConfigSource source =
+      Source("set = {views = 2, \"inner.share\" = 0.25}\nother = {inner.share = 0.75}\n");
+  Sample sample;
+  source.TakeTable("set").ReadInto(sample);
+  CHECK(sample.views == 2);
+  CHECK(sample.inner.share == 0.25);
+  source.TakeTable("other").ReadInto(sample);
+  CHECK(sample.inner.share == 0.75);
+  source.TakeTable("absent").ReadInto(sample);
+  CHECK_THAT(Refusal([] { Source("set = {\"a b\" = 1}\n").TakeTable("set"); }),
+             Contains("'a b' is no key"));
+}
+
+TEST_CASE("a moved key keeps its place in messages and is refused when it is there already") {
+  ConfigSource from = Source("part = 7\n"), to = Source("views = 2\n");
+  from.MoveKey("part", to, "inner.share");
+  from.MoveKey("absent", to, "inner.share");
+  Sample sample;
+  CHECK_THAT(Refusal([&] { to.ReadInto(sample); }), Contains("f.toml:1:8: inner.share: is 7"));
+  ConfigSource again = Source("part = 3\n");
+  CHECK_THAT(Refusal([&] { again.MoveKey("part", to, "views"); }), Contains("given twice"));
+}
+
+TEST_CASE("lists where a key takes one value span a grid, lists of a list key do not") {
+  const std::vector<Sample> grid =
+      Expand("views = [2, 3]\nsize_m = [4.0, 5.0]\n[inner]\nshare = [0.0, 0.5, 1.0]\n");
+  REQUIRE(grid.size() == 6);
+  CHECK(grid[0].inner.share == 0.0);
+  CHECK(grid[0].views == 2);
+  CHECK(grid[1].views == 3);
+  CHECK(grid[5].inner.share == 1.0);
+  for (const Sample& point : grid) CHECK(point.size_m == std::vector<double>{4.0, 5.0});
+  CHECK(Expand("size_m = [[1.0], [2.0, 3.0]]\n").at(1).size_m == std::vector<double>{2.0, 3.0});
+  CHECK(Expand("views = 2\n").size() == 1);
+  CHECK_THAT(Refusal([] { Expand("views = []\n"); }), Contains("empty list"));
+  CHECK_THAT(Refusal([] { Expand("views = [2, 99]\n"); }), Contains("f.toml:1:13: views: is 99"));
+}
+
+TEST_CASE("keys are told with their values as a person writes them") {
+  const auto texts = Source("driver = \"b\"\nsize_m = [0.5, 2]\n[inner]\nshare = 0.25\n").Texts();
+  const std::vector<std::pair<std::string, std::string>> expected = {
+      {"driver", "b"}, {"inner.share", "0.25"}, {"size_m", "[0.5, 2]"}};
+  CHECK(texts == expected);
+}
+
+}  // namespace tubetwin
