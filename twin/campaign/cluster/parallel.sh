@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A campaign in shards by GNU parallel, on this machine or on several by ssh:
-#   cluster/parallel.sh C.toml OUT SHARDS [campaign run OPTION...]
+#   twin/campaign/cluster/parallel.sh C.toml OUT SHARDS [campaign run OPTION...]
 #   tubetwin campaign merge OUT --out OUT/merged
 # Environment:
 #   JOBS      shards at a time on each machine (default: as many as cores)

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# cluster/parallel.sh for real, on this machine and by ssh to itself. parallel_test.sh SOURCE_DIR PROGRAM
+# twin/campaign/cluster/parallel.sh for real, on this machine and by ssh to itself. parallel_test.sh SOURCE_DIR PROGRAM
 source "$(dirname "$0")/common.sh"
 sshd=
 trap '[[ -n $sshd ]] && kill "$sshd"; rm -rf "$work"' EXIT
 command -v parallel >/dev/null || Skip "GNU parallel is not installed (apt-get install parallel)"
-parallel=$source_dir/cluster/parallel.sh
+parallel=$source_dir/twin/campaign/cluster/parallel.sh
 SmallCampaign
 
 "$parallel" "$work/C.toml" "$work/here" 3

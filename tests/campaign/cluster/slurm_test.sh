@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# cluster/slurm.sbatch for real: a Slurm of one node, started and stopped here. slurm_test.sh SOURCE_DIR PROGRAM
+# twin/campaign/cluster/slurm.sbatch for real: a Slurm of one node, started and stopped here. slurm_test.sh SOURCE_DIR PROGRAM
 source "$(dirname "$0")/common.sh"
 daemons=()
 Stop() {
@@ -69,7 +69,7 @@ for _ in $(seq 100); do [[ $(sinfo -h -o %t 2>/dev/null) == idle ]] && break; sl
 SmallCampaign
 cd "$work"
 mkdir out
-sbatch --quiet --wait --array=0-2 --output="$work/out/slurm-%a.log" "$source_dir/cluster/slurm.sbatch" C.toml out ||
+sbatch --quiet --wait --array=0-2 --output="$work/out/slurm-%a.log" "$source_dir/twin/campaign/cluster/slurm.sbatch" C.toml out ||
   { tail -n 5 "$work"/out/slurm-*.log >&2; Fail "the job array failed"; }
 Expect "three shards as a Slurm job array" "$work/out"
 
@@ -78,9 +78,9 @@ FakeProgram "$work/busy" 75 0
 FakeProgram "$work/broken" 78 0
 code=0
 TUBETWIN=$work/broken sbatch --quiet --wait --array=0-0 --output="$work/broken.log" \
-  "$source_dir/cluster/slurm.sbatch" C.toml broken.out || code=$?
+  "$source_dir/twin/campaign/cluster/slurm.sbatch" C.toml broken.out || code=$?
 [[ $code == 78 && $(Runs "$work/broken") == 1 ]] || Fail "78: exit $code after $(Runs "$work/broken") runs"
 TUBETWIN=$work/busy sbatch --quiet --wait --array=0-0 --output="$work/busy.log" \
-  "$source_dir/cluster/slurm.sbatch" C.toml busy.out || Fail "75 was not queued again: $(cat "$work/busy.log")"
+  "$source_dir/twin/campaign/cluster/slurm.sbatch" C.toml busy.out || Fail "75 was not queued again: $(cat "$work/busy.log")"
 [[ $(Runs "$work/busy") == 2 ]] || Fail "75, then 0: $(Runs "$work/busy") runs"
 echo "75 is queued again, 78 is not"

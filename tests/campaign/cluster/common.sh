@@ -1,4 +1,4 @@
-# Sourced by the tests of cluster/: a small campaign, its uninterrupted result, and skipping aloud.
+# Sourced by the tests of twin/campaign/cluster: a small campaign, its uninterrupted result, and skipping aloud.
 set -euo pipefail
 source_dir=$1 program=$2
 export TUBETWIN=$program
