@@ -32,6 +32,7 @@ TEST_CASE("Wrong campaigns and shards end with 64, 66, 73 or 78 and leave nothin
   CheckRefused(folder, "campaign status o", 66, "holds no campaign");
   CheckRefused(folder, "campaign merge o --out m", 66, "holds no campaign");
   CheckRefused(folder, "campaign compare o o", 66, "holds no campaign");
+  CheckRefused(folder, "campaign report o", 66, "holds no campaign");
   CHECK_FALSE(std::filesystem::exists(folder / "o"));
   CHECK_FALSE(std::filesystem::exists(folder / "m"));
   Write(folder, "taken", "a file, no folder\n");
@@ -69,6 +70,16 @@ TEST_CASE("Two shards of a campaign merge to the bytes of the whole", "[app][slo
     CHECK(ReadFile(folder / ("m/" + std::string(name))) ==
           ReadFile(folder / ("whole/" + std::string(name))));
   }
+  // Pages: of the whole beside its rows, of the merged one with what its shards kept, of a round.
+  const Outcome page = RunProgram(folder, "campaign report whole --json");
+  CHECK(Json::parse(page.out)["bytes"] == std::filesystem::file_size(folder / "whole/report.html"));
+  CHECK(RunProgram(folder, "campaign report m --kept s t --out pages/m.html").out ==
+        "pages/m.html\n");
+  CHECK_THAT(ReadFile(folder / "pages/m.html"), Catch::Contains("id=\"stage\""));
+  const std::string without_times = ReadFile(folder / (kept + "/report.html"));
+  CHECK(RunProgram(folder, "campaign report " + kept).code == 0);
+  CHECK_THAT(without_times, !Catch::Contains("computing: planning"));
+  CHECK_THAT(ReadFile(folder / (kept + "/report.html")), Catch::Contains("computing: planning"));
   const Outcome same = RunProgram(folder, "campaign compare whole m --json");
   CHECK(Json::parse(same.out)["pairs"][0]["tests"][0]["p"] == 1.0);
   CHECK(Json::parse(RunProgram(folder, "campaign status whole --json").out)["done"] == 2);

@@ -5,7 +5,7 @@ usage: report_browser.py PAGE.html SUMMARY.json [FOLDER]
 
 Checks: no message of level error on the console, no exception, nothing is asked for but the page
 itself, numbers as shown are those of summary.json, charts and 3-D view are drawn, the theme switch
-works. Prints how long opening took. Writes pictures (light, dark, phone) to FOLDER when given.
+works. Prints how long opening took. Writes pictures (light, dark, phone, print) to FOLDER when given.
 Speaks the DevTools protocol through a pipe; needs nothing but Python and chromium.
 """
 import base64
@@ -247,9 +247,9 @@ def main():
                              features=[{"name": "prefers-color-scheme", "value": theme}])
                 browser.go(url)
                 browser.picture(os.path.join(folder, name + ".png"))
-            printed = browser.call("Page.printToPDF", printBackground=True)
-            with open(os.path.join(folder, "print.pdf"), "wb") as out:
-                out.write(base64.b64decode(printed["data"]))
+            browser.size(794, 1123)  # A4 at 96 dots per inch.
+            browser.call("Emulation.setEmulatedMedia", media="print")
+            browser.picture(os.path.join(folder, "print.png"))
         found = complaints(browser, url)
         assert not found, "\n".join(found)
         print(f"opened in {opened_s:.2f} s, {os.path.getsize(page)} bytes, {numbers} numbers equal "

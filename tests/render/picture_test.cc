@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -45,6 +46,7 @@ Recording SmallRecording(int frames) {
                      {{-0.2, -0.1, 0.02}, {0.2, -0.1, 0.02}}};
   overlay.classes = {0, 2};
   overlay.target = 1;
+  overlay.cloud_N = {{0.1, -0.25, 0.0375}};
   recording.overlays = {overlay};
   for (int i = 0; i < frames; ++i) {
     Recording::Frame frame;
@@ -54,6 +56,7 @@ Recording SmallRecording(int frames) {
     frame.caption = i % 2;
     recording.frames.push_back(frame);
   }
+  recording.attempt_ends = {frames / 2, frames};
   return recording;
 }
 
@@ -78,6 +81,11 @@ TEST_CASE("A recording reads back as it was written", "[unit]") {
   REQUIRE(back.overlays.size() == 1);
   CHECK(back.overlays[0].lines_N == recording.overlays[0].lines_N);
   CHECK(back.overlays[0].classes == recording.overlays[0].classes);
+  REQUIRE(back.overlays[0].cloud_N.size() == 1);
+  constexpr double kHalfStep_m = 0.5e-4;  // The file has 0.1 mm.
+  CHECK((back.overlays[0].cloud_N[0] - recording.overlays[0].cloud_N[0]).norm() <
+        std::sqrt(3.0) * kHalfStep_m);
+  CHECK(back.attempt_ends == recording.attempt_ends);
   CHECK(back.overlays[0].target == 1);
   REQUIRE(back.frames.size() == 40);
   for (std::size_t i = 0; i < 40; ++i) {

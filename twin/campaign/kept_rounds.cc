@@ -6,7 +6,10 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/random.h"
+#include "twin/campaign/failure_picture.h"
+#include "twin/campaign/report_round.h"
 #include "twin/campaign/round.h"
 #include "twin/render/recording.h"
 
@@ -25,9 +28,9 @@ Recording Cut(const Recording& whole, int from, int to) {
   return out;
 }
 
-/// Draws the films of a kept round.
-std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_attempts, bool whole,
-                      Parallelism parallelism) {
+/// Draws films and pictures of a kept round, and its page anew with them.
+std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_attempts,
+                      const std::vector<Json>& rows, bool whole, Parallelism parallelism) {
   const Recording recording = ReadRecording((folder / "recording.bin").string());
   try {
     for (const int attempt : failed_attempts) {
@@ -37,8 +40,10 @@ std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_att
       if (part.frames.empty()) continue;
       RenderFilm(part, (folder / "failures" / FailureFolderName(attempt) / "film.mp4").string(),
                  kFilmStride, parallelism);
+      DrawFailurePicture(recording, attempt, rows[attempt], folder.string());
     }
     if (whole) RenderFilm(recording, (folder / "video.mp4").string(), kFilmStride, parallelism);
+    WriteRoundReport(folder.string(), (folder / "report.html").string(), /*timings=*/false);
   } catch (const Error& e) {
     return folder.string() + ": no film: " + e.what();
   }
@@ -117,8 +122,9 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
   fs::remove(work.parent_path(), ignored);
   if (campaign.keep.films) {
     if (!sampled && !task.keep_failure) failed.clear();
-    output.afterwards = [kept, failed, sampled, parallelism = options.parallelism] {
-      return DrawFilms(kept, failed, sampled, parallelism);
+    output.afterwards = [kept, failed, rows = output.picks, sampled,
+                         parallelism = options.parallelism] {
+      return DrawFilms(kept, failed, rows, sampled, parallelism);
     };
   }
   return output;

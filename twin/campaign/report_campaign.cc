@@ -148,12 +148,9 @@ std::string Failures(const Json& summary) {
     for (const auto& [failure, count] : At(summary, ArmPointer(arm) + "/failures").items()) {
       rows.push_back({FailureName(failure), {count.get<double>()}, count.dump()});
     }
-    const std::string name = Escaped(ArmName(summary, arm));
-    if (rows.empty()) {
-      out += "<p><span class=\"good\">No attempt failed</span>: " + name + ".</p>\n";
-    } else {
-      out += Figure(BarsSvg(rows, {"bad-bar"}, "Failed attempts by class"), name + ".");
-    }
+    if (ArmCount(summary) > 1) out += "<h3>" + Escaped(ArmName(summary, arm)) + "</h3>";
+    out += rows.empty() ? "<p class=\"good\">No attempt failed.</p>\n"
+                        : Figure(BarsSvg(rows, {"bad-bar"}, "Failed attempts by class"), "");
     std::string ends;
     for (const auto& [end, count] : At(summary, ArmPointer(arm) + "/end_reasons").items()) {
       ends += (ends.empty() ? "" : ", ") + Escaped(FailureName(end)) + " " + count.dump();
@@ -223,7 +220,8 @@ std::string Times(const Json& summary, const Json& manifest) {
              "</tr>\n<tr><th>simulated, per bin</th>" + SpreadCells(summary, sim + "/round", true) +
              "</tr>\n";
   }
-  return Figure(BarsSvg(bars, classes, "Mean seconds of an attempt"),
+  return "<div class=\"two\">" +
+         Figure(BarsSvg(bars, classes, "Mean seconds of an attempt"),
                 "Mean seconds of an attempt: simulated time of the cell plus computing time. " +
                     Legend({{"part0", "scan"},
                             {"part1", "move"},
@@ -232,7 +230,8 @@ std::string Times(const Json& summary, const Json& manifest) {
                             {"part4", "computing"}})) +
          "<figure class=\"chart-box\"><div class=\"chart-height\"><canvas id=\"times-chart\" "
          "role=\"img\" aria-label=\"Distribution of attempt times\"></canvas></div><figcaption>"
-         "How long attempts took, simulated.</figcaption></figure>\n<details><summary>The numbers"
+         "How long attempts took, simulated.</figcaption></figure></div>\n<details><summary>The "
+         "numbers"
          "</summary>" +
          table + "</table></div></details>\n";
 }
@@ -362,9 +361,9 @@ std::string CampaignReportHtml(const CampaignResult& result, const Json& summary
       Section("view", "One attempt in 3-D", ViewerHtml(attempts)) +
       Section("gallery", "Failed attempts", GalleryHtml(attempts)) +
       Section("forces", "Load at the wrist", TracesHtml(attempts)) +
-      Section("motions", "Motions", Motions(summary)) + "<div class=\"two\">" +
+      Section("motions", "Motions", Motions(summary)) +
       Section("steps", "Simulation and separation", Steps(summary)) +
-      Section("belief", "Belief against truth", Belief(summary)) + "</div>\n" +
+      Section("belief", "Belief against truth", Belief(summary)) +
       Section("rows", "Failed attempts, row by row", FailedRows(result)) +
       "<footer><p>Success is judged by the simulation's truth, which the picking pipeline never "
       "sees: exactly one new tube at rest on the tray, none outside. Intervals are Wilson's; those "

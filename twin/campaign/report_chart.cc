@@ -167,7 +167,7 @@ std::string IntervalMarkSvg(double share, double low, double high) {
 
 std::string BarsSvg(const std::vector<BarRow>& rows, const std::vector<std::string>& classes,
                     const std::string& title) {
-  constexpr double kWidth = 520.0, kRow = 26.0, kName = 150.0, kTold = 70.0;
+  constexpr double kWidth = 520.0, kRow = 26.0, kName = 160.0, kTold = 70.0;
   double longest = 0.0;
   for (const BarRow& row : rows) {
     longest = std::max(longest, std::accumulate(row.segments.begin(), row.segments.end(), 0.0));
@@ -177,7 +177,7 @@ std::string BarsSvg(const std::vector<BarRow>& rows, const std::vector<std::stri
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double y = kRow * static_cast<double>(i) + 4.0;
     std::string name = rows[i].name;
-    constexpr std::size_t kFits = 21;  // Of this width; the hint tells all.
+    constexpr std::size_t kFits = 20;  // Of this width; the hint tells all.
     if (name.size() > kFits) {
       std::size_t cut = kFits - 1;
       while (cut > 0 && (static_cast<unsigned char>(name[cut]) & 0xC0) == 0x80) --cut;

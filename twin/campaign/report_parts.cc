@@ -128,7 +128,7 @@ std::string ViewerHtml(const std::vector<ShownAttempt>& attempts) {
          "turn, wheel or pinch to come closer, right button to move; arrow keys step through time. "
          "Perceived centerlines: " +
          Legend({{"class0", "free"}, {"class1", "weak"}, {"class2", "strong"}}) +
-         "; the chosen one is thick. Tubes as they truly were.</p></div>\n";
+         "the chosen one is thick. Tubes lie as they truly did.</p></div>\n";
 }
 
 std::string GalleryHtml(const std::vector<ShownAttempt>& attempts) {
@@ -146,6 +146,13 @@ std::string TracesHtml(const std::vector<ShownAttempt>& attempts) {
   std::vector<const ShownAttempt*> ordered;
   for (const ShownAttempt& attempt : attempts) {
     if (!attempt.trace_svg.empty()) ordered.push_back(&attempt);
+  }
+  const bool one_round = std::all_of(ordered.begin(), ordered.end(), [&](const auto* attempt) {
+    return attempt->folder == ordered.front()->folder;
+  });
+  if (one_round) {  // Then in the order of time, else failures first.
+    std::stable_sort(ordered.begin(), ordered.end(),
+                     [](const auto* a, const auto* b) { return a->row < b->row; });
   }
   std::string out;
   for (const ShownAttempt* attempt : ordered) {

@@ -131,7 +131,7 @@ std::string TubesLeft(const std::vector<AttemptFacts>& facts) {
   std::vector<BarRow> rows;
   for (const auto& [left, count] : counts) {
     const auto [placed, failed] = count;
-    rows.push_back({std::to_string(left) + " tubes left",
+    rows.push_back({std::to_string(left) + (left == 1 ? " tube left" : " tubes left"),
                     {static_cast<double>(placed), static_cast<double>(failed)},
                     std::to_string(placed) + " of " + std::to_string(placed + failed)});
   }

@@ -135,7 +135,9 @@ std::string ShareDetailHtml(const Json& summary, const std::string& pointer) {
   if (n == 0 || !At(summary, pointer + "/wilson95").is_array()) return out;
   out += ", 95&nbsp;% interval " + PercentHtml(summary, pointer + "/wilson95/0") + " to " +
          PercentHtml(summary, pointer + "/wilson95/1") + "&nbsp;%";
-  if (At(summary, pointer + "/cluster95").is_array()) {
+  // A bootstrap over rounds that all agree is a point and says nothing (see ClusterBootstrap95).
+  const Json& cluster = At(summary, pointer + "/cluster95");
+  if (cluster.is_array() && cluster[0] != cluster[1]) {
     out += " <span class=\"nowrap\">(by rounds " + PercentHtml(summary, pointer + "/cluster95/0") +
            " to " + PercentHtml(summary, pointer + "/cluster95/1") + "&nbsp;%)</span>";
   }

@@ -88,7 +88,7 @@ std::string ForceTraceSvg(const Recording& recording, int from, int to,
     out += Fixed(p.x(), 1) + "," + Fixed(p.y(), 1) + " ";
   out += "\"/>";
   if (decided_s) {
-    const double frame = *decided_s * Recording::kFramesPerSecond - from;
+    const double frame = *decided_s * Recording::kFramesPerSecond;
     if (frame >= 0.0 && frame <= to - from) {
       const double x = kLeft + frame * per_frame;
       out += "<line class=\"decided\" x1=\"" + Fixed(x, 1) + "\" x2=\"" + Fixed(x, 1) + "\" y1=\"" +

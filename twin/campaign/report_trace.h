@@ -10,7 +10,7 @@ namespace tubetwin {
 
 /// The load below the wrist sensor over the frames [from, to) of a recording as inline SVG:
 /// seconds from the first frame, newtons; the weighing shaded; a mark where the pipeline decided
-/// (`decided_s` after the recording's begin). Rare knocks are cut off. Empty without frames.
+/// (`decided_s` after the first frame). Rare knocks are cut off. Empty without frames.
 std::string ForceTraceSvg(const Recording& recording, int from, int to,
                           std::optional<double> decided_s);
 

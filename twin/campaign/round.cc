@@ -8,6 +8,7 @@
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
 #include "hw_bridge/base/json.h"
+#include "twin/campaign/failure_picture.h"
 #include "twin/campaign/report_round.h"
 #include "twin/campaign/result_files.h"
 #include "twin/campaign/scoring.h"
@@ -152,6 +153,11 @@ void WriteRecord(const RoundRecorder& recorder, const RoundOptions& options) {
     if (options.progress) options.progress("drawing the film");
     RenderPicture(recorder.recording(), 0, (out / "picture.png").string());
     RenderFilm(recorder.recording(), (out / "video.mp4").string(), 1, options.parallelism);
+    for (std::size_t i = 0; i < recorder.rows.size(); ++i) {
+      if (recorder.rows[i]["success"] == true) continue;
+      DrawFailurePicture(recorder.recording(), static_cast<int>(i), recorder.rows[i],
+                         options.out_folder);
+    }
   }
   WriteRoundReport(options.out_folder, (out / "report.html").string(), /*timings=*/false);
 }

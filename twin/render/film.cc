@@ -4,6 +4,8 @@
 #include <map>
 #include <memory>
 
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "hw_bridge/base/error.h"
@@ -181,15 +183,37 @@ void RenderFilm(const Recording& recording, const std::string& path, int stride,
   });
 }
 
-void RenderPicture(const Recording& recording, int frame, const std::string& path) {
+namespace {
+
+/// The scene of one frame, as good as it gets.
+Image DrawStill(const Recording& recording, int frame) {
   const int count = static_cast<int>(recording.frames.size());
   if (frame < 0 || frame >= count) {
     throw Error(ErrorKind::kUsage, "recording: there is no frame " + std::to_string(frame) +
                                        ", allowed are 0 to " + std::to_string(count - 1));
   }
-  Image image = FrameDrawer(recording, 1, StageQuality::kStill).Draw(frame, 0);
+  return FrameDrawer(recording, 1, StageQuality::kStill).Draw(frame, 0);
+}
+
+}  // namespace
+
+void RenderPicture(const Recording& recording, int frame, const std::string& path) {
+  Image image = DrawStill(recording, frame);
   DrawPanels(recording, frame, image);
   WritePng(image, path);
+}
+
+void RenderSmallPicture(const Recording& recording, int frame, int width, const std::string& path) {
+  Image image = DrawStill(recording, frame);
+  const cv::Mat large(image.height, image.width, CV_8UC3, image.bgr.data());
+  cv::Mat small;
+  cv::resize(large, small, {width, width * image.height / image.width}, 0.0, 0.0, cv::INTER_AREA);
+  std::vector<std::uint8_t> bytes;
+  constexpr int kQuality = 82;
+  if (!cv::imencode(".jpg", small, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality})) {
+    throw Error(ErrorKind::kInternal, path + ": the picture cannot be encoded");
+  }
+  WriteFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace tubetwin

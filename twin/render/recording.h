@@ -59,4 +59,7 @@ void RenderFilm(const Recording& recording, const std::string& path, int stride,
 /// One picture of one frame of a recording (PNG).
 void RenderPicture(const Recording& recording, int frame, const std::string& path);
 
+/// The same without panels, `width` pixels wide, as JPEG: small enough to stand in a page.
+void RenderSmallPicture(const Recording& recording, int frame, int width, const std::string& path);
+
 }  // namespace tubetwin

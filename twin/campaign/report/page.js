@@ -40,13 +40,16 @@
   });
   dark.addEventListener("change", retheme);
   // Paper is light: style knows, what scripts draw has to be told.
-  let theme = "";
+  let theme = "", closed = [];
   addEventListener("beforeprint", function () {
+    closed = [...document.querySelectorAll("details:not([open])")];
+    for (const details of closed) details.open = true;
     theme = document.documentElement.dataset.theme || "";
     document.documentElement.dataset.theme = "light";
     retheme();
   });
   addEventListener("afterprint", function () {
+    for (const details of closed) details.open = false;
     if (theme) document.documentElement.dataset.theme = theme;
     else delete document.documentElement.dataset.theme;
     retheme();
@@ -117,6 +120,7 @@
       const labels = [];
       for (let i = first; i < bins; ++i) labels.push(String(i * step));
       const options = page.chartOptions("seconds", "attempts");
+      options.scales.y.grace = "8%";
       options.plugins.tooltip = {
         callbacks: {
           title: (items) => items[0].label + " to " + (Number(items[0].label) + step) + " s",

@@ -116,7 +116,7 @@
       const positions = new Float32Array(numbers.length);
       for (let i = 0; i < numbers.length; ++i) positions[i] = numbers[i] * kStep_m;
       geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
-      const points = new THREE.Points(geometry, new THREE.PointsMaterial({ color: page.colour("a3"), size: 2.2, sizeAttenuation: false }));
+      const points = new THREE.Points(geometry, new THREE.PointsMaterial({ color: page.colour("cloud"), size: 2, sizeAttenuation: false }));
       groups.seen.add(seen);
       groups.cloud.add(points);
       return { sample: look.sample, seen: seen, points: points };
@@ -216,8 +216,8 @@
       renderer.setClearColor(0x000000, 0);
       THREE.Object3D.DefaultUp.set(0, 0, 1);
       world = new THREE.Scene();
-      world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f96, 0.75));
-      const sun = new THREE.DirectionalLight(0xffffff, 0.6);
+      world.add(new THREE.HemisphereLight(0xffffff, 0x9aa0a8, 1.15));
+      const sun = new THREE.DirectionalLight(0xffffff, 0.85);
       sun.position.set(1.5, -2, 3);
       world.add(sun);
       camera = new THREE.PerspectiveCamera(36, 1, 0.02, 30);
@@ -244,8 +244,8 @@
     const checks = ["arm", "tubes", "seen", "cloud", "path"];
     const look = function () {
       const pose = attempt.scene.bin.pose;
-      controls.target.set(pose[0] - 0.05, pose[1] - 0.12, pose[2] + 0.08);
-      camera.position.set(pose[0] + 1.15, pose[1] - 1.25, pose[2] + 0.95);
+      controls.target.set(pose[0] - 0.08, pose[1] - 0.06, pose[2] + 0.1);
+      camera.position.set(pose[0] + 0.95, pose[1] - 1.1, pose[2] + 0.95);
       if (stage.clientWidth < 600) camera.position.sub(controls.target).multiplyScalar(1.45).add(controls.target);
       controls.update();
     };
