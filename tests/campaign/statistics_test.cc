@@ -13,6 +13,14 @@ constexpr double kRounding = 1e-12;
 
 RandomStream Stream(std::uint64_t seed) { return RandomStream(seed, 0, "statistics_test"); }
 
+TEST_CASE("The interval of a mean is Student's", "[unit]") {
+  // t(0.975; 9) = 2.262157, any table.
+  const Interval interval = MeanInterval95(10, 5.0, 2.0);
+  CHECK(interval.high - 5.0 == Approx(2.262157 * 2.0 / std::sqrt(10.0)).epsilon(1e-6));
+  CHECK(5.0 - interval.low == Approx(interval.high - 5.0));
+  CHECK(std::isnan(MeanInterval95(1, 5.0, 0.0).low));
+}
+
 }  // namespace
 
 TEST_CASE("the exact interval agrees with published values") {

@@ -70,6 +70,7 @@ void AddPerceiveVerb(CLI::App& app, Common& common);
 void AddPlanVerb(CLI::App& app, Common& common);
 void AddEvaluateVerb(CLI::App& app, Common& common);
 void AddCampaignVerb(CLI::App& app, Common& common);
+void AddReproduceVerb(CLI::App& app, Common& common);
 void AddRenderVerb(CLI::App& app, Common& common);
 void AddPartVerb(CLI::App& app, Common& common);
 void AddDoctorVerb(CLI::App& app, Common& common);

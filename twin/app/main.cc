@@ -31,6 +31,7 @@ int Run(int argc, char** argv) {
   AddPlanVerb(app, common);
   AddEvaluateVerb(app, common);
   AddCampaignVerb(app, common);
+  AddReproduceVerb(app, common);
   AddRenderVerb(app, common);
   AddPartVerb(app, common);
   AddDoctorVerb(app, common);

@@ -1,5 +1,3 @@
-#include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -9,6 +7,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/json.h"
+#include "twin/app/campaign_aloud.h"
 #include "twin/app/common.h"
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/campaign_status.h"
@@ -22,8 +21,6 @@
 
 namespace tubetwin {
 namespace {
-
-volatile std::sig_atomic_t g_stop = 0;  // Signal handlers may touch nothing else.
 
 struct CampaignOptions {
   std::string file, shard, limit_time;
@@ -49,31 +46,6 @@ double ParseDuration(const std::string& text) {
   return value * scale;
 }
 
-/// Tells of a running shard: in place on a terminal, else a line now and then.
-class Teller {
- public:
-  explicit Teller(const Common& common) : common_(common), line_(!common.quiet) {}
-  void Progress(const ShardProgress& progress) {
-    line_.Show(ProgressText(progress));
-    if (line_.enabled() || progress.done == told_) return;
-    const auto now = std::chrono::steady_clock::now();
-    if (told_ >= 0 && now - told_at_ < std::chrono::seconds(30)) return;
-    Say(common_, ProgressText(progress));
-    told_ = progress.done;
-    told_at_ = now;
-  }
-  void Notice(const std::string& text) {
-    line_.Clear();
-    std::fprintf(stderr, "tubetwin: %s\n", text.c_str());
-  }
-
- private:
-  const Common& common_;
-  ProgressLine line_;
-  int told_ = -1;
-  std::chrono::steady_clock::time_point told_at_;
-};
-
 int RunVerb(const CampaignOptions& given, const Common& common) {
   CampaignRunOptions options;
   options.shard = ChooseShard(given.shard, given.shards,
@@ -81,30 +53,9 @@ int RunVerb(const CampaignOptions& given, const Common& common) {
   if (!given.limit_time.empty()) options.limit_s = ParseDuration(given.limit_time);
   const Campaign campaign = LoadCampaign(given.file, common.overrides, common.seed);
   options.out_folder = common.out;
-  options.jobs = given.jobs > 0 ? given.jobs : Parallelism::All().threads;
+  options.jobs = given.jobs;
   options.grace_s = given.grace_s;
-  options.program_version = TUBETWIN_VERSION;
-  std::signal(SIGTERM, [](int) { g_stop = 1; });
-  std::signal(SIGINT, [](int) { g_stop = 1; });
-  options.stop_requested = [] { return g_stop != 0; };
-  CampaignRun run;
-  {
-    Teller teller(common);
-    options.progress = [&](const ShardProgress& progress) { teller.Progress(progress); };
-    options.notice = [&](const std::string& text) { teller.Notice(text); };
-    const CampaignRoundOptions round{common.out, Parallelism{std::max(1, common.threads)},
-                                     TUBETWIN_VERSION};
-    run = RunCampaign(
-        campaign, [&](const RoundTask& task) { return RunCampaignRound(campaign, task, round); },
-        options);
-  }
-  Say(common, ProgressText(run.progress));
-  if (run.end != CampaignEnd::kDone) {
-    std::fprintf(stderr, "tubetwin: %s with %d of %d rounds saved; run again to go on\n",
-                 run.end == CampaignEnd::kStopped ? "stopped" : "the time is up", run.progress.done,
-                 run.progress.total);
-    return static_cast<int>(ErrorKind::kInterrupted);
-  }
+  if (const int code = RunCampaignAloud(campaign, options, common); code != 0) return code;
   if (options.shard.count > 1) return 0;
   const CampaignResult result =
       ReadShards({common.out});  // The whole campaign: no merge is needed.

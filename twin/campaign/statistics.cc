@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/students_t.hpp>
 
 #include "hw_bridge/base/error.h"
 
@@ -75,6 +76,16 @@ Interval Bootstrap95(int count, const std::function<double(const std::vector<int
   }
   std::sort(found.begin(), found.end());
   return {SortedQuantile(found, kTail), SortedQuantile(found, 1.0 - kTail)};
+}
+
+Interval MeanInterval95(int n, double mean, double sd) {
+  if (n < 2) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return {kNone, kNone};
+  }
+  const boost::math::students_t_distribution<double> t(n - 1);
+  const double half = boost::math::quantile(boost::math::complement(t, kTail)) * sd / std::sqrt(n);
+  return {mean - half, mean + half};
 }
 
 double Quantile(std::vector<double> values, double share) {

@@ -40,6 +40,10 @@ struct Interval {
 Interval Bootstrap95(int count, const std::function<double(const std::vector<int>&)>& statistic,
                      RandomStream random, int resamples = 2000);
 
+/// 95 % interval of the mean of `n` values with mean `mean` and standard deviation `sd` (of n - 1),
+/// by Student's t with n - 1 degrees of freedom. n < 2: NaN.
+Interval MeanInterval95(int n, double mean, double sd);
+
 /// Sample quantile at `share` in [0, 1] of values in any order, with linear interpolation between
 /// order statistics (Hyndman and Fan 1996, type 7). Precondition: values not empty.
 double Quantile(std::vector<double> values, double share);
