@@ -5,10 +5,10 @@
 namespace tubetwin {
 namespace {
 
-/// A view without pose of its own that sees `points` three times each: thinning reads every third.
+/// A view from N's origin: S and N are one frame.
 OrganizedCloud View(const std::vector<Eigen::Vector3f>& points) {
   OrganizedCloud view;
-  for (const Eigen::Vector3f& p : points) view.p_SP.insert(view.p_SP.end(), 3, p);
+  view.p_SP = points;
   view.width = static_cast<int>(view.p_SP.size());
   view.height = 1;
   return view;
@@ -28,8 +28,8 @@ TEST_CASE("Of each cell in the bin the first point stays, the rest and the outsi
   const std::vector<Vector3> points_N = ThinnedPoints({view, view}, Bin());
   REQUIRE(points_N.size() == 3);
   CHECK(points_N[0].cast<float>() == view.p_SP[0]);
-  CHECK(points_N[1].cast<float>() == view.p_SP[6]);
-  CHECK(points_N[2].cast<float>() == view.p_SP[18]);
+  CHECK(points_N[1].cast<float>() == view.p_SP[2]);
+  CHECK(points_N[2].cast<float>() == view.p_SP[6]);
 }
 
 TEST_CASE("There are never more points than asked for, spread over all that was seen") {

@@ -13,7 +13,7 @@ namespace tubetwin {
 
 void DrawFailurePicture(const Recording& recording, int row, const Json& pick,
                         const std::string& round_folder) {
-  constexpr int kWidth_px = 720;
+  constexpr int kWidth_px = 960;
   TT_CHECK(row >= 0 && row < static_cast<int>(recording.attempt_ends.size()));
   const int from = row == 0 ? 0 : recording.attempt_ends[row - 1];
   const int to = recording.attempt_ends[row];

@@ -128,7 +128,7 @@ std::string ViewerHtml(const std::vector<ShownAttempt>& attempts) {
          "turn, wheel or pinch to come closer, right button to move; arrow keys step through time. "
          "Perceived centerlines: " +
          Legend({{"class0", "free"}, {"class1", "weak"}, {"class2", "strong"}}) +
-         "the chosen one is thick. Tubes lie as they truly did.</p></div>\n";
+         "The chosen one is thick; tubes lie as they truly did.</p></div>\n";
 }
 
 std::string GalleryHtml(const std::vector<ShownAttempt>& attempts) {

@@ -1,5 +1,6 @@
 #include "twin/campaign/thinned_points.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -19,21 +20,36 @@ bool IsNear(const Vector3& p_NP, const Bin& bin) {
          p_NP.z() < kTop_m;
 }
 
-/// Also used with whole clouds of a million points: rows and columns are stepped over.
+/// Rows and columns of a view that are stepped over, so that about kLooked points of all views are
+/// looked at: still several for each fine cell.
+int StepOf(const std::vector<OrganizedCloud>& views) {
+  constexpr double kLooked = 150'000.0;
+  std::size_t all = 0;
+  for (const OrganizedCloud& view : views) all += view.size();
+  return std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(all) / kLooked))));
+}
+
 std::vector<Vector3> Thinned(const std::vector<OrganizedCloud>& views, const Bin& bin,
                              double scale) {
+  const int step = StepOf(views);
   std::set<std::array<int, 4>> taken;
   std::vector<Vector3> out;
+  const auto add = [&](const Vector3& p_NP) {
+    const bool floor = p_NP.z() < kFloorBand_m;
+    const double cell_m = scale * (floor ? kFloor_m : kFine_m);
+    const auto index = [&](double x) { return static_cast<int>(std::floor(x / cell_m)); };
+    if (taken.insert({floor ? 1 : 0, index(p_NP.x()), index(p_NP.y()), index(p_NP.z())}).second) {
+      out.push_back(p_NP);
+    }
+  };
   for (const OrganizedCloud& view : views) {
-    for (std::size_t i = 0; i < view.size(); i += 3) {
-      if (!IsValid(view.p_SP[i])) continue;
-      const Vector3 p_NP = view.X_NS * view.p_SP[i].cast<double>();
-      if (!IsNear(p_NP, bin)) continue;
-      const bool floor = p_NP.z() < kFloorBand_m;
-      const double cell_m = scale * (floor ? kFloor_m : kFine_m);
-      const auto index = [&](double x) { return static_cast<int>(std::floor(x / cell_m)); };
-      if (taken.insert({floor ? 1 : 0, index(p_NP.x()), index(p_NP.y()), index(p_NP.z())}).second) {
-        out.push_back(p_NP);
+    for (int row = 0; row < view.height; row += step) {
+      for (int column = 0; column < view.width; column += step) {
+        const Eigen::Vector3f& p_SP =
+            view.p_SP[static_cast<std::size_t>(row) * view.width + column];
+        if (!IsValid(p_SP)) continue;
+        const Vector3 p_NP = view.X_NS * p_SP.cast<double>();
+        if (IsNear(p_NP, bin)) add(p_NP);
       }
     }
   }
