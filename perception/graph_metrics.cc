@@ -71,6 +71,16 @@ bool ShowsOrEnds(const SeenProfile& profile, double s_m, double sign, double rea
   return false;
 }
 
+/// Whether nothing is seen of the tube between `s_m` and one of its ends.
+bool OnUnseenEnd(const SeenProfile& profile, double s_m) {
+  const auto here = std::clamp<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(s_m / profile.bin_m), 0,
+                                               std::ssize(profile.seen));
+  const auto at = profile.seen.begin() + here;
+  const auto shows = [](char seen) { return seen != 0; };
+  return std::none_of(profile.seen.begin(), at, shows) ||
+         std::none_of(at, profile.seen.end(), shows);
+}
+
 /// A perceived crossing in terms of true tubes.
 struct Placed {
   int over = -1, under = -1;
@@ -133,6 +143,11 @@ CrossingScore ScoreCrossings(const TubeScene& scene, const std::vector<Polyline>
                          ShowsOrEnds(seen[under], c.at_under_m, -1.0, reach_m);
     ++(visible ? score.visible : score.hidden);
     if (right) ++(visible ? score.visible_right : score.hidden_right);
+    if (!visible &&
+        (OnUnseenEnd(seen[over], c.at_over_m) || OnUnseenEnd(seen[under], c.at_under_m))) {
+      ++score.on_unseen_end;
+      if (right) ++score.on_unseen_end_right;
+    }
     if (!right && reversed) ++(visible ? score.visible_reversed : score.hidden_reversed);
   }
   score.spurious = static_cast<int>(std::count(explained.begin(), explained.end(), 0));

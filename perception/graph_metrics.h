@@ -22,10 +22,13 @@ std::vector<SeenProfile> FindSeen(const std::vector<Polyline>& true_lines_N,
 /// is right when a perceived one of the same two tubes, in the same order, covers part of the same
 /// run, 20 mm more or less.
 /// It counts as visible when its upper tube is seen there and the lower one within four radii on
-/// both sides (or ends there), as hidden otherwise.
+/// both sides (or ends there), as hidden otherwise. A hidden one lies on an unseen end when nothing
+/// is seen of one of its tubes between it and that tube's end: no bridge leads there, the tube's
+/// length and bend are all that is known.
 struct CrossingScore {
   int visible = 0, visible_right = 0, visible_reversed = 0;
   int hidden = 0, hidden_right = 0, hidden_reversed = 0;
+  int on_unseen_end = 0, on_unseen_end_right = 0;  ///< Of the hidden ones.
   int spurious = 0;  ///< Perceived between paired tubes, without a true one of any order near it.
 };
 CrossingScore ScoreCrossings(const TubeScene& scene, const std::vector<Polyline>& true_lines_N,

@@ -184,6 +184,7 @@ Json RowOf(const TubeScene& scene, const Pile& pile, const Look& look) {
               {"covered_called_free", score.covered_called_free},
               {"visible", {crossings.visible, crossings.visible_right, crossings.visible_reversed}},
               {"hidden", {crossings.hidden, crossings.hidden_right, crossings.hidden_reversed}},
+              {"unseen_end", {crossings.on_unseen_end, crossings.on_unseen_end_right}},
               {"spurious", crossings.spurious},
               {"joints", {joints.truth, joints.perceived, joints.right}},
               {"seen_um", Micrometres(errors.seen_m)},

@@ -36,9 +36,9 @@ def table(rows, worst):
     for row in rows:
         cells[cell_of(row)].append(row)
     print("| part | setup | noise | hand-eye | tubes | piles | micro-recall | found % | extra | seen median/p95 mm | "
-          "all p95 mm | visible crossings right % | hidden right % | reversed | spurious | class right % | "
+          "all p95 mm | visible crossings right % | hidden right % | on a bridge % | on an unseen end % | reversed | spurious | class right % | "
           "covered called free % | joint F1 (P, R) | ms median |")
-    print("|" + "---|" * 19)
+    print("|" + "---|" * 21)
     for key in sorted(cells):
         done = cells[key]
         total = lambda name: sum(r[name] for r in done)
@@ -54,6 +54,8 @@ def table(rows, worst):
                    rate(total("found"), total("tubes")), total("predicted") - total("paired"),
                    f"{quantile(seen, .5):.2f}/{quantile(seen, .95):.2f}", f"{quantile(both, .95):.2f}",
                    rate(item("visible", 1), item("visible", 0)), rate(item("hidden", 1), item("hidden", 0)),
+                   rate(item("hidden", 1) - item("unseen_end", 1), item("hidden", 0) - item("unseen_end", 0)),
+                   rate(item("unseen_end", 1), item("unseen_end", 0)),
                    item("visible", 2) + item("hidden", 2), total("spurious"),
                    rate(total("class_right"), total("paired")),
                    rate(total("covered_called_free"), total("covered")),

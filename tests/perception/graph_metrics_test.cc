@@ -65,12 +65,24 @@ TEST_CASE("A crossing in sight is visible, one behind something wide is hidden",
   const Scores hidden = ScoreAll(kCross, 0.06);
   CHECK(hidden.crossings.hidden == 1);
   CHECK(hidden.crossings.hidden_right == 1);
+  CHECK(hidden.crossings.on_unseen_end == 0);
   CHECK(hidden.crossings.visible == 0);
   CHECK(hidden.joints.truth == 2);
   CHECK(hidden.joints.perceived == 2);
   CHECK(hidden.joints.right == 2);
   CHECK(hidden.errors.seen_m.size() > 50);
   CHECK(hidden.errors.hidden_m.size() > 20);
+}
+
+TEST_CASE("A hidden crossing with nothing seen beyond it lies on an unseen end", "[unit]") {
+  auto points = TopOf(kCross, 0.0);
+  std::erase_if(points, [](const TubePoint& p) { return p.tube == 0 && p.p_N.x() > -0.08; });
+  const TubeScene scene = SceneOf(kCross);
+  const CrossingScore score = ScoreCrossings(scene, kCross, FindSeen(kCross, points),
+                                             ScoreTubes(scene, kCross, points, kRadius), kRadius);
+  CHECK(score.hidden == 1);
+  CHECK(score.on_unseen_end == 1);
+  CHECK(score.on_unseen_end_right == 1);
 }
 
 TEST_CASE("Tubes perceived in the wrong order make a reversed crossing", "[unit]") {
