@@ -15,6 +15,7 @@ TEST_CASE("The paper's profile changes defaults, a layer still wins over it", "[
   CHECK(scenario.planner.classes == "occluded_joints");
   CHECK(scenario.planner.samples == 5);
   CHECK(scenario.planner.weight_extra == 0.0);
+  CHECK(scenario.planner.max_candidates == 1000);
   CHECK(scenario.resolution.strategy == "plus45");
   CHECK(scenario.cycle.tolerance_share == 0.5);
 }

@@ -95,6 +95,25 @@ TEST_CASE("Two crossed tubes are found, the lower one joined under the upper", "
   CHECK(seen.crossings.size() == 1);
 }
 
+TEST_CASE("A bend of 90 degrees is modelled by cylinders all along", "[unit]") {
+  constexpr double kBend_m = 0.05;
+  ToyScene scene;
+  Polyline line = {{-0.2, 0, kRadius_m}};
+  for (int deg = 0; deg <= 90; deg += 5) {
+    const double a = Radians(deg);
+    line.push_back({kBend_m * std::sin(a), kBend_m * (1 - std::cos(a)), kRadius_m});
+  }
+  line.push_back({kBend_m, kBend_m + 0.22, kRadius_m});
+  scene.tubes_N = {line};
+  PerceptionConfig config = Leao();
+  config.leao2020.join_distance_m = 0.05;
+  config.leao2020.join_angle_deg = 70.0;
+  const TubeScene seen = See(scene, config);
+  REQUIRE(seen.tubes.size() == 1);
+  CHECK(seen.tubes[0].length_m == Approx(Length(line)).margin(0.03));  // Chords cut the bend.
+  CHECK(seen.unexplained_N.size() < 50);
+}
+
 TEST_CASE("The paper's class survives writing and reading, and only that profile writes it",
           "[unit]") {
   const Json written = ToJson(See(Cross(), Leao()));
