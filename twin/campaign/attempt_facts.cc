@@ -32,7 +32,7 @@ std::vector<AttemptFacts> FactsOf(const RoundRecord& record) {
     if (row["truth"].is_object()) {
       const auto placed = static_cast<int>(row["truth"]["placed_ids"].size());
       const auto outside = static_cast<int>(row["truth"]["outside_ids"].size());
-      facts.placed = placed - placed_before;
+      facts.placed = facts.success ? 1 : placed - placed_before;
       facts.outside = outside - outside_before;
       placed_before = placed;
       outside_before = outside;

@@ -13,7 +13,7 @@ struct AttemptFacts {
   bool first = false;         ///< The first attempt since a tube was placed.
   bool success = false;       ///< Exactly one new tube on the tray, nothing outside.
   int tubes_left = 0;         ///< In the bin before it: at the start, less placed and outside.
-  int placed = 0;             ///< Tubes that it brought to the tray, wherever they came from.
+  int placed = 0;             ///< Tubes that came to count as placed; one for a success.
   int outside = 0;            ///< Tubes that it lost outside.
   /// Why it is no success: "crashed", "outside", "several_placed", "placed_none" (believed placed),
   /// "placed_unnoticed", else the pipeline's own outcome ("nothing_held", "dropped", "put_back",

@@ -8,6 +8,7 @@
 namespace tubetwin {
 namespace {
 
+constexpr double kAtRest_m_s = 0.02;         // The physics' own creep stays far below.
 constexpr const char* kCrashed = "crashed";  // No RoundEnd: nobody was left to say it.
 
 Json DetectionJson(const std::optional<Detection>& detection) {
@@ -35,7 +36,23 @@ double YawErrorDeg(const Vector3& direction_T) {
   return Degrees(angle);
 }
 
+bool Has(const std::vector<int>& ids, int id) {
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
+
 }  // namespace
+
+TrayCount CountTray(const std::vector<Truth::Tube>& tubes, const TrayCount& before) {
+  TrayCount now;
+  for (const Truth::Tube& tube : tubes) {
+    if (!tube.over_tray || tube.over_bin || tube.touches_pads || tube.hangs) continue;
+    now.arrived_ids.push_back(tube.id);
+    if (tube.speed_m_s < kAtRest_m_s || Has(before.placed_ids, tube.id)) {
+      now.placed_ids.push_back(tube.id);
+    }
+  }
+  return now;
+}
 
 RoundScorer::RoundScorer(const TwinCell& cell, int tubes_start)
     : truth_(cell), tubes_start_(tubes_start) {}
@@ -43,18 +60,17 @@ RoundScorer::RoundScorer(const TwinCell& cell, int tubes_start)
 void RoundScorer::AtDetection() { held_at_detection_ = truth_.Held(); }
 
 Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
-  // Placed: at rest over the tray, no part over the bin or in the gripper.
-  constexpr double kAtRest_m_s = 0.02;  // The physics' own creep stays far below.
-  std::vector<int> placed, outside;
+  const std::vector<Truth::Tube> tubes = truth_.Tubes();
+  const TrayCount tray = CountTray(tubes, tray_);
+  std::vector<int> outside;
   const CellLayout layout;
   Json error_mm = nullptr, error_deg = nullptr;
-  for (const Truth::Tube& tube : truth_.Tubes()) {
-    const bool placed_now = tube.over_tray && !tube.over_bin && !tube.touches_pads && !tube.hangs &&
-                            tube.speed_m_s < kAtRest_m_s;
-    if (placed_now) placed.push_back(tube.id);
+  int added = 0;
+  for (const Truth::Tube& tube : tubes) {
     if (tube.outside) outside.push_back(tube.id);
-    const bool is_new = placed_now && std::find(placed_ids_.begin(), placed_ids_.end(), tube.id) ==
-                                          placed_ids_.end();
+    // What arrived with an earlier attempt and only now rests is no work of this one.
+    const bool is_new = Has(tray.placed_ids, tube.id) && !Has(tray_.arrived_ids, tube.id);
+    added += is_new ? 1 : 0;
     if (is_new && report.slot_centre_T) {
       const RigidTransform X_TB = layout.X_BT.inverse();
       const Vector3 off = X_TB * tube.centre_of_mass_B - *report.slot_centre_T;
@@ -62,10 +78,9 @@ Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
       error_deg = YawErrorDeg(PrincipalDirection(Transformed(X_TB, tube.centerline_B)));
     }
   }
-  const int added = static_cast<int>(placed.size()) - static_cast<int>(placed_ids_.size());
   const bool new_outside = outside.size() > outside_ids_.size();
   const bool success = report.outcome == AttemptOutcome::kPlaced && added == 1 && !new_outside;
-  placed_ids_ = placed;
+  tray_ = tray;
   outside_ids_ = outside;
 
   Json row;
@@ -92,7 +107,7 @@ Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
                       {"settle", report.sim_s.settle},
                       {"total", report.sim_s.total()}};
   row["truth"] = Json{{"held", report.detection ? Json(held_at_detection_) : Json(nullptr)},
-                      {"placed_ids", placed_ids_},
+                      {"placed_ids", tray_.placed_ids},
                       {"outside_ids", outside_ids_},
                       {"placement_error_mm", error_mm},
                       {"placement_error_deg", error_deg}};
@@ -116,7 +131,7 @@ Json RoundScorer::TimingRow(const AttemptReport& report, int round, double wall_
 }
 
 Json RoundScorer::Summary(const RoundReport& report, double sim_s) const {
-  const int placed = static_cast<int>(placed_ids_.size());
+  const int placed = static_cast<int>(tray_.placed_ids.size());
   const auto interval = Wilson95(first_attempts_placed_, picks_placed_);
   Json out;
   out["schema"] = "tubetwin/summary/1";

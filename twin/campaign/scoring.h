@@ -9,6 +9,18 @@
 
 namespace tubetwin {
 
+/// What lies on the tray, by truth.
+struct TrayCount {
+  std::vector<int> placed_ids;  ///< In the order of the tubes.
+  /// Over the tray and out of the gripper's and the bin's reach: the placed ones and those that
+  /// still move.
+  std::vector<int> arrived_ids;
+};
+
+/// Placed is a tube that is at rest over the tray, no part over the bin or in the gripper, and one
+/// that was placed before and has not left the tray: a new neighbour may make it rock.
+TrayCount CountTray(const std::vector<Truth::Tube>& tubes, const TrayCount& before);
+
 /// Scores attempts by truth while a round runs. The one place, with the round itself, that sees
 /// truth.
 class RoundScorer {
@@ -28,7 +40,8 @@ class RoundScorer {
   Truth truth_;
   int tubes_start_ = 0;
   int held_at_detection_ = 0;
-  std::vector<int> placed_ids_, outside_ids_;
+  TrayCount tray_;
+  std::vector<int> outside_ids_;
   int attempts_ = 0, successes_ = 0;
   int first_attempts_placed_ = 0;  ///< Placed by truth at attempt 1.
   int picks_placed_ = 0;           ///< Attempts that placed exactly one, by truth.
