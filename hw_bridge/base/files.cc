@@ -33,8 +33,14 @@ void WriteThroughTemporary(const std::string& path,
                            const std::function<void(const std::string&)>& write) {
   const fs::path target(path);
   if (target.has_parent_path()) MakeFolder(target.parent_path().string());
-  if (fs::is_directory(target)) {
+  const fs::file_status there = fs::status(target);
+  if (fs::is_directory(there)) {
     throw Error(ErrorKind::kCannotCreate, path + ": is a folder, a file name is needed");
+  }
+  if (fs::exists(there) && !fs::is_regular_file(there)) {
+    // The rename would put a file in the device's place, for everybody.
+    throw Error(ErrorKind::kCannotCreate,
+                path + ": is a device, pipe or socket; the name of a file is needed");
   }
   // Unique per process and call, the ending kept: libraries choose a format by it.
   static std::atomic<unsigned> counter{0};

@@ -13,7 +13,8 @@ std::string ReadFile(const std::string& path);
 
 /// Writes `content` beside `path`, then renames: readers see the old file or the new one, never
 /// half. Creates missing parent folders. Throws Error(kCannotCreate) when the folder or file cannot
-/// be created, Error(kIo) when writing fails; the old file then stays.
+/// be created or the path is a device, pipe or socket, Error(kIo) when writing fails; the old file
+/// then stays.
 void WriteFileAtomically(const std::string& path, std::string_view content);
 
 /// Same for content that is written piece by piece, or by a library that wants a file name:

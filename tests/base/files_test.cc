@@ -1,5 +1,6 @@
 #include "hw_bridge/base/files.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -76,6 +77,21 @@ TEST_CASE("writing below a file or onto a folder cannot be created") {
   CHECK(KindOf([&] { MakeFolder(folder / "file"); }) == ErrorKind::kCannotCreate);
   fs::create_directory(folder / "dir");
   CHECK(KindOf([&] { WriteFileAtomically(folder / "dir", "y"); }) == ErrorKind::kCannotCreate);
+}
+
+TEST_CASE("what is no file is not replaced by one") {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe", link = folder / "link";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  fs::create_symlink(pipe, link);
+  for (const std::string& target : {pipe, link}) {
+    CHECK_THROWS_WITH(WriteFileAtomically(target, "x"),
+                      Catch::Matchers::Contains("is a device, pipe or socket"));
+    CHECK_THROWS_WITH(WriteFileAtomically(target, "x"), Catch::Matchers::Contains(target));
+  }
+  CHECK(fs::is_fifo(pipe));
+  CHECK(fs::is_symlink(link));
+  CHECK(CountFiles(folder / ".") == 2);
 }
 
 TEST_CASE("writing into a folder without permission cannot be created") {
