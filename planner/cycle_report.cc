@@ -65,6 +65,8 @@ const char* ToString(RoundEnd end) {
       return "fault";
     case RoundEnd::kInterrupted:
       return "interrupted";
+    case RoundEnd::kStored:
+      return "stored";
   }
   return "fault";
 }

@@ -46,7 +46,7 @@ struct AttemptReport {
 };
 
 /// Why a round ended.
-enum class RoundEnd { kEmpty, kNoPlan, kAttemptLimit, kFault, kInterrupted };
+enum class RoundEnd { kEmpty, kNoPlan, kAttemptLimit, kFault, kInterrupted, kStored };
 const char* ToString(RoundEnd end);
 
 struct RoundReport {

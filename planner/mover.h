@@ -46,6 +46,13 @@ class Mover {
   /// About E, which stays where it is. Rotation vector in B, radians.
   void Tilt(const Vector3& rotation_B, double speed_rad_s);
 
+  /// Goes on as a mover whose last motion ended at `q`.
+  void Resume(const JointVector& q, double opening_m) {
+    q_ = q;
+    opening_m_ = opening_m;
+  }
+  double opening_m() const { return opening_m_; }
+
   const MotionPlanner& planner() const { return planner_; }
 
   /// Whether the arm can put E there, tool pointing down.

@@ -17,6 +17,9 @@ constexpr double kNothingOpening_m = 0.004;  ///< Closed fingers: nothing betwee
 constexpr double kContactSlack_m = 0.004;    ///< Contact this near the grasp still closes.
 constexpr int kMostRecoveries = 5;           ///< Rejected motions in one round.
 
+/// Several hang in the fingers, and the round was to end there.
+struct EndAtSeveral {};
+
 /// One round: the readable list of steps is RunPickCycle at the end of this file.
 class Round {
  public:
@@ -159,6 +162,8 @@ class Round {
                             const Detection& detection) {
     HeldOutcome held = detection.outcome;
     if (held == HeldOutcome::kSeveral) {
+      c_.observer.OnSeveral(Stored(line_E));
+      if (c_.setup.cycle.end_at_several) throw EndAtSeveral();
       c_.report.resolution_used = c_.report.strategy != ResolutionStrategy::kNone;
       held = Resolve(c_, detection.torque_Nm);
       if (c_.report.resolution_used) c_.report.resolution_outcome = held;
@@ -239,10 +244,29 @@ class Round {
     return out;
   }
 
+  /// Goes on where Stored() stood.
+  void Resume(const HeldState& state) {
+    const ResolutionStrategy strategy = c_.report.strategy;
+    c_.report = state.report;
+    c_.report.strategy = strategy;
+    attempt_ = state.report.attempt;
+    c_.reference_K = state.reference_K;
+    c_.attempt_began = state.attempt_began;
+    c_.placed_T = state.placed_T;
+    c_.mover.Resume(state.q, state.opening_m);
+    c_.observer.OnReference(c_.reference_K);
+    c_.observer.OnDetection(*c_.report.detection);
+  }
+
   CycleContext& context() { return c_; }
   Looker& looker() { return looker_; }
 
  private:
+  HeldState Stored(const Polyline& line_E) const {
+    return {c_.report,   line_E,       c_.reference_K,      c_.attempt_began,
+            c_.placed_T, c_.mover.q(), c_.mover.opening_m()};
+  }
+
   GripperState SetFingers(double opening_m, int close) {
     GripperCommand command;
     command.opening_m = close ? 0.0 : opening_m;
@@ -337,6 +361,8 @@ RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver&
     }
     try {
       if (auto end = Attempt(round)) return *end;
+    } catch (const EndAtSeveral&) {
+      return round.EndOfRound(RoundEnd::kStored, "several tubes hang in the fingers");
     } catch (const MoveFailure& failure) {
       if (failure.kind == MoveFailure::Kind::kFault || !round.Recover(failure.what())) {
         round.EndAttempt(AttemptOutcome::kFault, failure.what());
@@ -344,6 +370,24 @@ RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver&
       }
     }
   }
+}
+
+RoundReport FinishHeldAttempt(Cell& cell, const PickCycleSetup& setup, const HeldState& state,
+                              CycleObserver& observer) {
+  Round round(cell, setup, observer);
+  round.BeginAttempt();
+  round.Resume(state);
+  const AttemptReport& report = round.context().report;
+  try {
+    const Detection detection = *report.detection;
+    round.EndAttempt(round.FinishHeld(*state.report.plan, state.line_E, detection), "");
+  } catch (const MoveFailure& failure) {
+    if (failure.kind == MoveFailure::Kind::kFault || !round.Recover(failure.what())) {
+      round.EndAttempt(AttemptOutcome::kFault, failure.what());
+      return round.EndOfRound(RoundEnd::kFault, failure.what());
+    }
+  }
+  return round.EndOfRound(RoundEnd::kStored, "the attempt of the stored state is over");
 }
 
 }  // namespace tubetwin

@@ -7,6 +7,7 @@
 #include "hw_bridge/cell/cell.h"
 #include "perception/perceive.h"
 #include "planner/cycle_report.h"
+#include "planner/held_state.h"
 
 namespace tubetwin {
 
@@ -41,6 +42,8 @@ struct CycleConfig {
   double settle_s = 2.0;  ///< Between the end of a motion and the decision.
   double weigh_window_s = 0.2;
   double tolerance_share = 0.5;  ///< F_tol in tube weights.
+  /// The round ends where several tubes hang in the fingers, once the observer has heard of it.
+  bool end_at_several = false;
   int attempts_per_tube = 4;  ///< The round ends after this many times the first count, plus ten.
   void Visit(ConfigVisitor& v);
 };
@@ -60,6 +63,8 @@ class CycleObserver {
   virtual void OnReference(const Wrench& /*reference_K*/) {}
   /// The decision how many hang in the fingers, before any resolution.
   virtual void OnDetection(const Detection& /*detection*/) {}
+  /// Several hang in the fingers, and nothing was done about it yet; the arm is at rest.
+  virtual void OnSeveral(const HeldState& /*state*/) {}
   virtual void OnAttemptEnd(const AttemptReport& /*report*/) {}
 };
 
@@ -80,5 +85,10 @@ struct PickCycleSetup {
 /// Empties the bin: scan, model, plan, approach, grasp, weigh, resolve, place, until the scan shows
 /// an empty bin or nothing can be taken. Does not know whether the cell is simulated.
 RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer);
+
+/// The rest of the attempt in which a cell was stored: resolution, then placing or putting back,
+/// with the strategy of `setup`. `cell` must stand as it stood then.
+RoundReport FinishHeldAttempt(Cell& cell, const PickCycleSetup& setup, const HeldState& state,
+                              CycleObserver& observer);
 
 }  // namespace tubetwin

@@ -51,6 +51,10 @@ void CycleConfig::Visit(ConfigVisitor& v) {
   v.Field("settle_s", "between the end of a motion and the decision", settle_s, {0.1, 20});
   v.Field("weigh_window_s", "mean over", weigh_window_s, {0.02, 5});
   v.Field("tolerance_share", "F_tol in tube weights", tolerance_share, {0.1, 0.9});
+  v.Field("end_at_several",
+          "the round ends where several tubes hang in the fingers; the result folder holds that "
+          "moment as held.pile.json, which pile.file takes",
+          end_at_several);
   v.Field("attempts_per_tube", "the round ends after this many times the first count, plus ten",
           attempts_per_tube, {1, 100});
 }

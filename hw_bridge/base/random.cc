@@ -56,6 +56,13 @@ std::uint32_t RandomStream::NextBits() {
   return block_[used_++];
 }
 
+RandomStream RandomStream::After(std::uint64_t words) const {
+  RandomStream out(key_);
+  out.counter_ = words / 4;
+  for (std::uint64_t i = 0; i < words % 4; ++i) out.NextBits();
+  return out;
+}
+
 std::array<std::uint32_t, 4> RandomStream::Block(std::uint64_t index) const {
   return Philox(key_, index, kTable);
 }

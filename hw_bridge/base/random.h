@@ -25,6 +25,9 @@ class RandomStream {
   /// Four words of the endless table that belongs to this stream, in any order; draws nothing.
   /// Other numbers than NextBits gives.
   std::array<std::uint32_t, 4> Block(std::uint64_t index) const;
+  /// 32-bit words drawn so far, and a stream of the same key from which `words` were drawn.
+  std::uint64_t drawn() const { return 4 * counter_ - (4 - static_cast<std::uint64_t>(used_)); }
+  RandomStream After(std::uint64_t words) const;
   /// Integer in [0, n). Precondition: n > 0.
   std::uint32_t Index(std::uint32_t n);
 

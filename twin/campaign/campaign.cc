@@ -11,6 +11,7 @@
 #include "hw_bridge/base/text.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/campaign/file_lock.h"
+#include "twin/campaign/held_round.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;
@@ -62,11 +63,22 @@ std::string ArmName(const std::string& given, bool alone, const ConfigSource& ke
 }
 
 /// Reads what rounds will read, so that a missing part or pile is told before the first.
-void ReadInputs(CampaignArm& arm, const std::string& folder) {
+void ReadInputs(CampaignArm& arm, const std::string& folder, int rounds) {
   Scenario& scenario = arm.scenario;
   ScenarioVisuals(scenario, folder);
   if (!scenario.pile.file.empty()) {
-    const Pile pile = AskedPile(scenario, folder);
+    Scenario first = scenario;
+    if (fs::is_directory(fs::path(folder) / scenario.pile.file)) {
+      const std::vector<std::string> files = PileFilesOf(scenario, folder);
+      if (static_cast<int>(files.size()) < rounds) {
+        throw Error(ErrorKind::kMissing, scenario.pile.file + ": holds " +
+                                             std::to_string(files.size()) + " piles (*.json) for " +
+                                             std::to_string(rounds) +
+                                             " rounds; each needs its own");
+      }
+      first.pile.file = files.front();
+    }
+    const Pile pile = AskedPile(first, folder);
     arm.part = pile.part;
     arm.tubes = static_cast<int>(pile.tubes.size());
     return;
@@ -97,7 +109,7 @@ void AddArms(ConfigSource table, const std::string& where,
                       ": set: seed: rounds of all arms share the seeds that come from the "
                       "campaign's; give it at the top");
     }
-    ReadInputs(arm, campaign.folder);
+    ReadInputs(arm, campaign.folder, campaign.rounds);
     arm.name = ArmName(left.name, grid.size() == 1, point, arm);
     campaign.arms.push_back(std::move(arm));
   }
@@ -111,8 +123,11 @@ Json ArmIdentity(const CampaignArm& arm, int index, const std::string& folder) {
       Json::parse(WriteConfigJson([&scenario](ConfigVisitor& v) { scenario.Visit(v); }));
   out["config"].erase("seed");  // Each round has its own.
   if (!scenario.pile.file.empty()) {
-    const fs::path file = fs::path(folder) / scenario.pile.file;
-    out["pile_fingerprint"] = Fingerprint(ReadFile(file.string()));
+    std::vector<std::string> files = PileFilesOf(scenario, folder);
+    if (files.empty()) files = {scenario.pile.file};
+    std::string content;
+    for (const std::string& file : files) content += ReadFile((fs::path(folder) / file).string());
+    out["pile_fingerprint"] = Fingerprint(content);
   }
   if (!scenario.bin.mesh.empty()) {
     const fs::path file = fs::path(folder) / scenario.bin.mesh;

@@ -9,6 +9,7 @@
 #include "hw_bridge/base/json.h"
 #include "hw_bridge/base/random.h"
 #include "twin/campaign/failure_picture.h"
+#include "twin/campaign/held_round.h"
 #include "twin/campaign/report_round.h"
 #include "twin/campaign/round.h"
 #include "twin/render/recording.h"
@@ -81,6 +82,8 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
                              const CampaignRoundOptions& options) {
   Scenario scenario = campaign.arms.at(static_cast<std::size_t>(task.arm)).scenario;
   scenario.seed = task.seed;
+  const std::vector<std::string> piles = PileFilesOf(scenario, campaign.folder);
+  if (!piles.empty()) scenario.pile.file = piles.at(static_cast<std::size_t>(task.round));
   const bool sampled = IsSampled(campaign, task.round);
   const std::string name = RoundFolderName(task.arm, task.round);
   const fs::path out(options.out_folder);
@@ -97,6 +100,10 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
                : task.keep_failure ? RoundKeep::kFailures
                                    : RoundKeep::kRows;
   RoundResult result = RunRound(scenario, round);
+  if (fs::exists(work / kHeldRoundFile)) {
+    MakeFolder((out / "held").string());
+    fs::rename(work / kHeldRoundFile, out / "held" / (name + ".pile.json"));
+  }
 
   RoundOutput output;
   output.summary = std::move(result.summary);

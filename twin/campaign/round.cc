@@ -9,6 +9,7 @@
 #include "hw_bridge/base/files.h"
 #include "hw_bridge/base/json.h"
 #include "twin/campaign/failure_picture.h"
+#include "twin/campaign/held_round.h"
 #include "twin/campaign/report_round.h"
 #include "twin/campaign/result_files.h"
 #include "twin/campaign/scoring.h"
@@ -65,6 +66,10 @@ class RoundRecorder : public CycleObserver {
   }
   void OnDetection(const Detection&) override { scorer_.AtDetection(); }
 
+  void OnSeveral(const HeldState& state) override {
+    if (on_several) on_several(state, scorer_.State());
+  }
+
   void OnAttemptEnd(const AttemptReport& report) override {
     rows.push_back(scorer_.AttemptRow(report, 0));
     const double now = WallNow();
@@ -85,7 +90,11 @@ class RoundRecorder : public CycleObserver {
                        [](const Json& row) { return row["success"] != true; });
   }
 
+  void Resume(const JsonView& scorer) { scorer_.Restore(scorer); }
+
   std::vector<Json> rows, timings;
+  /// Told of the moment when several hang, with the scorer's state; may be empty.
+  std::function<void(const HeldState&, const Json&)> on_several;
 
  private:
   void AddFrame() {
@@ -145,6 +154,15 @@ Pile StartPile(const Scenario& scenario, const Pile& asked, const RoundPhysics& 
   return settled.pile;  // Escaped tubes are part of the truth: they will not be placed.
 }
 
+/// The attempt of a stored round, from where it was stored to its end.
+RoundReport GoOn(const HeldRound& held, TwinCell& twin, const PickCycleSetup& setup,
+                 RoundRecorder& recorder) {
+  const JsonView view = JsonView(held.document, held.file).Field("held");
+  twin.Restore(view.Field("cell"));
+  recorder.Resume(view.Field("scorer"));
+  return FinishHeldAttempt(twin.cell(), setup, HeldStateFromJson(view.Field("cycle")), recorder);
+}
+
 /// Recording, film and report.
 void WriteRecord(const RoundRecorder& recorder, const RoundOptions& options) {
   const fs::path out(options.out_folder);
@@ -173,6 +191,8 @@ std::string FailureFolderName(int row) {
 RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   const double began = WallNow();
   Scenario scenario = given;
+  const std::optional<HeldRound> held = ReadHeldRound(scenario, options.scenario_folder);
+  if (held) scenario.seed = held->seed;
   const Pile asked = ScenarioPile(scenario, options.scenario_folder);
   const fs::path out(options.out_folder);
   // A given pile is archived, so that the resolved configuration runs wherever the folder is moved.
@@ -184,8 +204,12 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   ClaimResultFolder(options.out_folder, resolved, options.force);
 
   const RoundPhysics physics = ScenarioPhysics(scenario, asked.part);
-  const Pile pile = StartPile(scenario, asked, physics);
-  if (archive_pile) SavePile(asked, (out / "given.pile.json").string());
+  const Pile pile = held ? asked : StartPile(scenario, asked, physics);
+  if (held) {
+    WriteJsonFile(held->document, (out / "given.pile.json").string());
+  } else if (archive_pile) {
+    SavePile(asked, (out / "given.pile.json").string());
+  }
   for (const ArchivedFile& mesh : meshes) {
     WriteFileAtomically((out / mesh.name).string(), ReadFile(mesh.from));
   }
@@ -202,8 +226,16 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   fs::remove_all(out / "failures");
 
   RoundRecorder recorder(twin, pile, std::move(visuals), options);
+  fs::remove(out / kHeldRoundFile);
+  if (scenario.cycle.end_at_several) {
+    recorder.on_several = [&](const HeldState& state, const Json& scorer) {
+      SaveHeldRound(pile, scenario.seed, twin.State(), state, scorer,
+                    (out / kHeldRoundFile).string());
+    };
+  }
+  const PickCycleSetup setup = CycleSetup(scenario, asked.part, options);
   const RoundReport report =
-      RunPickCycle(twin.cell(), CycleSetup(scenario, asked.part, options), recorder);
+      held ? GoOn(*held, twin, setup, recorder) : RunPickCycle(twin.cell(), setup, recorder);
 
   RoundResult result;
   result.interrupted = report.end == RoundEnd::kInterrupted;

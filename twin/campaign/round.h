@@ -37,6 +37,9 @@ struct RoundResult {
   bool interrupted = false;
 };
 
+/// The stored moment that a round with cycle.end_at_several ends at; pile.file takes it.
+inline constexpr const char* kHeldRoundFile = "held.pile.json";
+
 /// Folder of a failed attempt below failures/; `row` counts rows of picks.jsonl from 0.
 std::string FailureFolderName(int row);
 

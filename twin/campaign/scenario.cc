@@ -40,7 +40,10 @@ BinMesh BinOfMesh(const Scenario& scenario, const std::string& folder) {
 }  // namespace
 
 void Scenario::PileChoice::Visit(ConfigVisitor& v) {
-  v.Field("file", "pile to start from (pile.json, CSV or the public set's text); empty: generate",
+  v.Field("file",
+          "pile to start from (pile.json, CSV or the public set's text), or a moment that "
+          "cycle.end_at_several stored; in campaigns a folder of them too, one for each round; "
+          "empty: generate",
           file);
   v.Field("part", "part name or part file; empty: what the pile file says, else pvc_a", part);
   v.Field("count", "tubes to generate", count, {1, 40});

@@ -57,6 +57,21 @@ TrayCount CountTray(const std::vector<Truth::Tube>& tubes, const TrayCount& befo
 RoundScorer::RoundScorer(const TwinCell& cell, int tubes_start)
     : truth_(cell), tubes_start_(tubes_start) {}
 
+Json RoundScorer::State() const {
+  return Json{{"placed_ids", placed_ids_}, {"outside_ids", outside_ids_}};
+}
+
+void RoundScorer::Restore(const JsonView& state) {
+  const auto read = [&](const char* name, std::vector<int>& ids) {
+    const JsonView view = state.Field(name);
+    for (std::size_t i = 0; i < view.Size(); ++i) {
+      ids.push_back(static_cast<int>(view.Item(i).AsInteger()));
+    }
+  };
+  read("placed_ids", placed_ids_);
+  read("outside_ids", outside_ids_);
+}
+
 void RoundScorer::AtDetection() { held_at_detection_ = truth_.Held(); }
 
 Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {

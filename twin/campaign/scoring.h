@@ -27,6 +27,10 @@ class RoundScorer {
  public:
   RoundScorer(const TwinCell& cell, int tubes_start);
 
+  /// What rows to come depend on: {placed_ids, outside_ids}, and back.
+  Json State() const;
+  void Restore(const JsonView& state);
+
   /// At the decision how many tubes hang in the fingers.
   void AtDetection();
   /// At the end of an attempt (at least one second after a release): its row for picks.jsonl.

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
 #include "scenes/bin_body.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/engine/stepping.h"
@@ -169,6 +171,42 @@ void CellWorld::Step() {
     throw Error(ErrorKind::kInternal, "the cell's physics is " + std::string(ToString(status)) +
                                           " at " + std::to_string(data_->time) + " s");
   }
+}
+
+Json CellWorld::State() const {
+  std::vector<mjtNum> state(mj_stateSize(model_.get(), mjSTATE_INTEGRATION));
+  GuardEngine([&] { mj_getState(model_.get(), data_.get(), state.data(), mjSTATE_INTEGRATION); });
+  return Json{
+      {"steps", steps_},
+      {"world", Fingerprint(Xml())},
+      {"integration", state},
+      {"tree_asleep", std::vector<int>(data_->tree_asleep, data_->tree_asleep + model_->ntree)}};
+}
+
+void CellWorld::Restore(const JsonView& state) {
+  const JsonView world = state.Field("world");
+  if (world.AsString() != Fingerprint(Xml())) {
+    world.Fail("the state belongs to another cell: its pile, physics or program differ");
+  }
+  const std::vector<double> integration = state.Field("integration").AsNumbers();
+  const std::vector<double> asleep = state.Field("tree_asleep").AsNumbers();
+  if (static_cast<int>(integration.size()) != mj_stateSize(model_.get(), mjSTATE_INTEGRATION) ||
+      static_cast<int>(asleep.size()) != model_->ntree) {
+    state.Fail("the state has another size than the cell's");
+  }
+  GuardEngine([&] {
+    const auto set = [&] {
+      mj_setState(model_.get(), data_.get(), integration.data(), mjSTATE_INTEGRATION);
+    };
+    // Once awake, for what derives from the positions of sleeping tubes is kept, not computed.
+    set();
+    mj_forward(model_.get(), data_.get());
+    set();
+    std::copy(asleep.begin(), asleep.end(), data_->tree_asleep);
+    mj_step1(model_.get(), data_.get());
+    pad_contacts_->Correct(*data_);
+  });
+  steps_ = state.Field("steps").AsInteger();
 }
 
 ScanGeometry CellWorld::Geometry() const {

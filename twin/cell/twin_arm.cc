@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/arm_body.h"
 
@@ -142,6 +143,24 @@ void TwinArm::SetPayload(double mass_kg, const Vector3& p_FC) {
   TT_CHECK(mass_kg >= 0.0);
   payload_kg_ = mass_kg;
   p_FPayload_ = p_FC;
+}
+
+Json TwinArm::StoredState() const {
+  TT_CHECK(mode_ == ArmMode::kReady);
+  return Json{{"q_reference", std::vector<double>(reference_.q.begin(), reference_.q.end())},
+              {"payload_kg", payload_kg_},
+              {"p_FPayload_m", ToJson(p_FPayload_)}};
+}
+
+void TwinArm::Restore(const JsonView& state) {
+  const JsonView q = state.Field("q_reference");
+  if (q.Size() != kNumJoints) q.Fail("one number for each of the 6 joints is needed");
+  const std::vector<double> numbers = q.AsNumbers();
+  mode_ = ArmMode::kReady;
+  reference_ = {};
+  std::copy(numbers.begin(), numbers.end(), reference_.q.begin());
+  payload_kg_ = state.Field("payload_kg").AsNumber();
+  p_FPayload_ = state.Field("p_FPayload_m").AsVector3();
 }
 
 void TwinArm::Fault(const std::string& text) {

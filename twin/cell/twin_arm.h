@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/cell/devices.h"
 #include "models/arm.h"
 #include "twin/cell/cell_world.h"
@@ -25,6 +26,11 @@ class TwinArm : public Arm {
 
   /// Sets the motors' torques for the coming step. Call between mj_step1 and mj_step2.
   void Control();
+
+  /// What the arm's coming steps depend on besides the world, and back. Precondition of State: no
+  /// trajectory is running.
+  Json StoredState() const;
+  void Restore(const JsonView& state);
 
   /// True joint positions, not quantised; for the world's own use.
   JointVector TruePosition() const;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hw_bridge/base/json.h"
 #include "twin/cell/twin_cell_impl.h"
 
 namespace tubetwin {
@@ -53,6 +54,22 @@ Cell& TwinCell::cell() { return impl_->cell; }
 
 void TwinCell::SetFrameObserver(std::function<void()> observer) {
   impl_->observer = std::move(observer);
+}
+
+Json TwinCell::State() const {
+  return Json{{"world", impl_->world.State()},           {"arm", impl_->arm.StoredState()},
+              {"gripper", impl_->gripper.StoredState()}, {"wrist", impl_->wrist.StoredState()},
+              {"scans", impl_->scanner.taken()},         {"frames", impl_->frames}};
+}
+
+void TwinCell::Restore(const JsonView& state) {
+  // The gripper first: its force is a number of the model.
+  impl_->gripper.Restore(state.Field("gripper"));
+  impl_->world.Restore(state.Field("world"));
+  impl_->arm.Restore(state.Field("arm"));
+  impl_->wrist.Restore(state.Field("wrist"));
+  impl_->scanner.SetTaken(static_cast<std::uint64_t>(state.Field("scans").AsInteger()));
+  impl_->frames = state.Field("frames").AsInteger();
 }
 
 std::string TwinCell::ModelXml() const { return impl_->world.Xml(); }

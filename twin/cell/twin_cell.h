@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/base/parallel.h"
 #include "hw_bridge/cell/cell.h"
 #include "models/physics.h"
@@ -32,6 +33,13 @@ class TwinCell {
   /// Called after every 1/30 s of simulated time, at exactly k/30 s rounded to the step; for
   /// recordings. Must not change the world.
   void SetFrameObserver(std::function<void()> observer);
+
+  /// All that the cell's future depends on, of a cell at rest: no trajectory runs, no scan waits.
+  Json State() const;
+  /// Goes on from such a state, as the cell it was taken from, on the same machine type: bit by bit
+  /// but for what CellWorld::Restore says of sleeping tubes; always the same from one state.
+  /// The cell must have been made from the same pile and options. Throws Error(kBadData).
+  void Restore(const JsonView& state);
 
   /// The compiled model as XML (cell.xml).
   std::string ModelXml() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hw_bridge/base/json.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/gripper_body.h"
 
@@ -53,9 +54,36 @@ void TwinGripper::Command(const GripperCommand& command) {
   target_m_ = spec_.stroke_m - QuantisedOpening(command.opening_m, spec_.stroke_m);
   speed_m_s_ = AsByte(command.speed_m_s, spec_.min_speed_m_s, spec_.max_speed_m_s);
   force_N_ = AsByte(command.force_N, spec_.min_force_N, spec_.max_force_N);
+  SetForceRange();
+  MoveOn();
+}
+
+void TwinGripper::SetForceRange() {
   model_.actuator_forcerange[2 * actuator_] = -force_N_;
   model_.actuator_forcerange[2 * actuator_ + 1] = force_N_;
-  MoveOn();
+}
+
+Json TwinGripper::StoredState() const {
+  return Json{{"phase", static_cast<int>(phase_)},
+              {"target_m", target_m_},
+              {"reference_m", reference_m_},
+              {"speed_m_s", speed_m_s_},
+              {"force_N", force_N_},
+              {"contact_m", contact_m_},
+              {"still", still_}};
+}
+
+void TwinGripper::Restore(const JsonView& state) {
+  const JsonView phase = state.Field("phase");
+  phase_ = static_cast<Phase>(phase.AsInteger());
+  if (phase_ < Phase::kMoving || phase_ > Phase::kAtPosition) phase.Fail("allowed: 0 to 3");
+  target_m_ = state.Field("target_m").AsNumber();
+  reference_m_ = state.Field("reference_m").AsNumber();
+  speed_m_s_ = state.Field("speed_m_s").AsNumber();
+  force_N_ = state.Field("force_N").AsNumber();
+  contact_m_ = state.Field("contact_m").AsNumber();
+  still_ = static_cast<int>(state.Field("still").AsInteger());
+  SetForceRange();
 }
 
 GripperState TwinGripper::State() const {

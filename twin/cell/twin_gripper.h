@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/cell/devices.h"
 #include "models/gripper_spec.h"
 #include "twin/cell/cell_world.h"
@@ -20,6 +21,9 @@ class TwinGripper : public Gripper {
 
   /// Sets the servo of the coming step. Call between mj_step1 and mj_step2.
   void Control();
+  /// What the servo's coming steps depend on besides the world, and back.
+  Json StoredState() const;
+  void Restore(const JsonView& state);
   /// True opening between the pads, not quantised.
   double TrueOpening() const;
 
@@ -27,6 +31,7 @@ class TwinGripper : public Gripper {
   enum class Phase { kMoving, kPressing, kContact, kAtPosition };
   double Travel() const;
   void MoveOn();
+  void SetForceRange();
 
   CellWorld& world_;
   GripperSpec spec_;

@@ -15,6 +15,11 @@ RigidTransform TwinScanner::TrueX_BS() const {
          setup_.physics.X_SbelievedS;
 }
 
+std::uint64_t TwinScanner::taken() const {
+  TT_CHECK(!shot_);
+  return taken_;
+}
+
 CommandResult TwinScanner::Trigger() {
   if (Status() == ScanStatus::kBusy) {
     return {CommandResult::Status::kRejected, "a scan is running"};

@@ -30,6 +30,11 @@ class TwinScanner : public Scanner {
   ScanStatus Status() const override;
   OrganizedCloud Take() override;
 
+  /// Scans so far, which the noise of the next depends on. Precondition of reading: none runs or
+  /// waits to be taken.
+  std::uint64_t taken() const;
+  void SetTaken(std::uint64_t taken) { taken_ = taken; }
+
   /// True pose of the scanner now.
   RigidTransform TrueX_BS() const;
 

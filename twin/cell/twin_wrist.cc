@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "hw_bridge/base/json.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/arm_body.h"
 
@@ -65,6 +66,25 @@ WrenchSample WrenchChain::Next(const Wrench& load_K, TimeNs time) {
   return sample;
 }
 
+Json WrenchChain::StoredState() const {
+  return Json{{"filtered", std::vector<double>(filtered_.begin(), filtered_.end())},
+              {"bias", std::vector<double>(bias_.begin(), bias_.end())},
+              {"drawn", stream_.drawn()}};
+}
+
+void WrenchChain::Restore(const JsonView& state) {
+  const auto read = [&](const char* name, Vector6& out) {
+    const JsonView field = state.Field(name);
+    if (field.Size() != 6) field.Fail("six numbers are needed");
+    const std::vector<double> numbers = field.AsNumbers();
+    std::copy(numbers.begin(), numbers.end(), out.begin());
+  };
+  read("filtered", filtered_);
+  read("bias", bias_);
+  stream_ = stream_.After(static_cast<std::uint64_t>(state.Field("drawn").AsInteger()));
+  first_ = false;
+}
+
 TwinWrist::TwinWrist(const CellWorld& world, const RoundPhysics& physics, RandomStream stream)
     : world_(world),
       data_(world.data()),
@@ -74,6 +94,24 @@ TwinWrist::TwinWrist(const CellWorld& world, const RoundPhysics& physics, Random
 
 Wrench TwinWrist::TrueLoad() const {
   return {-Vector3(data_.sensordata + force_), -Vector3(data_.sensordata + torque_)};
+}
+
+Json TwinWrist::StoredState() const {
+  Json state = chain_.StoredState();
+  state["newest"] = Json{{"time_ns", newest_.time.count()},
+                         {"force_N", ToJson(newest_.wrench_K.force_N)},
+                         {"torque_Nm", ToJson(newest_.wrench_K.torque_Nm)},
+                         {"saturated", newest_.saturated}};
+  return state;
+}
+
+void TwinWrist::Restore(const JsonView& state) {
+  chain_.Restore(state);
+  const JsonView newest = state.Field("newest");
+  newest_.time = TimeNs(newest.Field("time_ns").AsInteger());
+  newest_.wrench_K.force_N = newest.Field("force_N").AsVector3();
+  newest_.wrench_K.torque_Nm = newest.Field("torque_Nm").AsVector3();
+  newest_.saturated = newest.Field("saturated").AsBool();
 }
 
 void TwinWrist::Sample() { newest_ = chain_.Next(TrueLoad(), world_.now()); }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 
+#include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/base/random.h"
 #include "hw_bridge/cell/devices.h"
 #include "models/physics.h"
@@ -19,6 +20,10 @@ class WrenchChain {
 
   /// The next reading of a true load. `time` is only passed on.
   WrenchSample Next(const Wrench& load_K, TimeNs time);
+
+  /// Filter, bias and place in the random stream, and back.
+  Json StoredState() const;
+  void Restore(const JsonView& state);
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -40,6 +45,9 @@ class TwinWrist : public ForceTorqueSensor {
   WrenchSample Read() const override { return newest_; }
   /// Takes the sample of the step that has just been made (or of the world as it stands).
   void Sample();
+  /// What the coming samples depend on besides the world, with the newest one, and back.
+  Json StoredState() const;
+  void Restore(const JsonView& state);
   /// The load without the sensor's faults.
   Wrench TrueLoad() const;
 
