@@ -9,9 +9,11 @@ namespace {
 constexpr double kRetreat_m = 0.15;
 constexpr double kReleaseExtra_m = 0.030;  ///< Opening beyond the tube when letting go.
 constexpr double kRestAfterTilt_s = 1.0;
-constexpr double kWeakTorque_Nm = 0.02;    ///< Below, the torque axis is arbitrary.
-constexpr double kPlaceGap_m = 0.003;      ///< E stops this far above touching the tray.
-constexpr double kAbovePlace_m = 0.20;     ///< Last weighing: above all that lies on the tray.
+constexpr double kWeakTorque_Nm = 0.02;  ///< Below, the torque axis is arbitrary.
+constexpr double kYawStep_deg = 20.0;    ///< Turns of the tool at the tilt station that are tried.
+constexpr int kMostYawSteps = 8;         ///< In either sense.
+constexpr double kPlaceGap_m = 0.003;    ///< E stops this far above touching the tray.
+constexpr double kAbovePlace_m = 0.20;   ///< Last weighing: above all that lies on the tray.
 constexpr double kGuardedPlace_m = 0.035;  ///< From here on what lies on the tray may be met.
 constexpr double kTruthDelay_s = 2.0;      ///< A hose that lay on others rocks before it rests.
 
@@ -70,35 +72,64 @@ HeldOutcome LowerAndRelift(CycleContext& c) {
   return c.Weigh(c.setup.cycle.settle_s).outcome;
 }
 
+/// Where the tilts are made: at the station of the layout, turned about the vertical as little as
+/// keeps the scanner off the forearm in all of them.
+RigidTransform TiltStation(const CycleContext& c, const Vector3& axis_E,
+                           const std::vector<double>& angles_deg) {
+  const Matrix3 R_BE = c.mover.X_BE().linear();
+  const RigidTransform straight = MakeTransform(R_BE, c.cell.layout.p_BTilt);
+  for (int k = 0; k < 2 * kMostYawSteps; ++k) {
+    const double yaw_deg = kYawStep_deg * ((k + 1) / 2) * (k % 2 == 0 ? 1 : -1);
+    const RigidTransform turned =
+        MakeTransform(RotZ(Radians(yaw_deg)) * R_BE, straight.translation());
+    std::vector<Vector3> rotations_B;
+    for (const double angle_deg : angles_deg) {
+      rotations_B.push_back(Radians(angle_deg) * (turned.linear() * axis_E));
+    }
+    if (c.mover.TiltsFrom(turned, rotations_B)) return turned;
+  }
+  return straight;
+}
+
 }  // namespace
 
 HeldOutcome Resolve(CycleContext& c, const Vector3& load_torque_K) {
-  {
-    const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
-    RigidTransform station = c.mover.X_BE();
-    station.translation() = c.cell.layout.p_BTilt;
-    c.mover.Line(station, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
-  }
   // The load torque's horizontal axis: turning about it in the positive sense lets the heavy side
   // go down.
-  Vector3 axis_B = c.mover.X_BE().linear() * load_torque_K;
+  const Matrix3 R_BE = c.mover.X_BE().linear();
+  Vector3 axis_B = R_BE * load_torque_K;
   axis_B.z() = 0.0;
   axis_B = axis_B.norm() > kWeakTorque_Nm ? axis_B.normalized() : Vector3(Vector3::UnitX());
   const double angle = c.setup.resolution.angle_deg;
-  switch (ResolutionStrategyFromName(c.setup.resolution.strategy)) {
+  std::vector<double> angles_deg;
+  const ResolutionStrategy strategy = ResolutionStrategyFromName(c.setup.resolution.strategy);
+  switch (strategy) {
     case ResolutionStrategy::kNone:
       return HeldOutcome::kSeveral;
     case ResolutionStrategy::kPlus45:
-      return TiltSequence(c, axis_B, {angle});
+      angles_deg = {angle};
+      break;
     case ResolutionStrategy::kPlus45Minus45:
-      return TiltSequence(c, axis_B, {angle, -angle});
+      angles_deg = {angle, -angle};
+      break;
     case ResolutionStrategy::kPerpendicular:
-      return TiltSequence(c, Vector3(-axis_B.y(), axis_B.x(), 0.0), {angle, -angle});
+      axis_B = Vector3(-axis_B.y(), axis_B.x(), 0.0);
+      angles_deg = {angle, -angle};
+      break;
     case ResolutionStrategy::kPutback:
-      c.observer.OnStep("several held: lowering and lifting again");
-      return LowerAndRelift(c);
+      break;
   }
-  return HeldOutcome::kSeveral;
+  const Vector3 axis_E = R_BE.transpose() * axis_B;
+  const RigidTransform station = TiltStation(c, axis_E, angles_deg);
+  {
+    const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
+    c.mover.Line(station, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+  }
+  if (strategy == ResolutionStrategy::kPutback) {
+    c.observer.OnStep("several held: lowering and lifting again");
+    return LowerAndRelift(c);
+  }
+  return TiltSequence(c, station.linear() * axis_E, angles_deg);
 }
 
 void PutBack(CycleContext& c) {

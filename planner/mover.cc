@@ -108,6 +108,20 @@ void Mover::Legs(const std::vector<Vector3>& p_BE, double speed_m_s, double acce
   Run(planner_.PlanPolyline(Start(), poses, Options(speed_m_s, acceleration_m_s2)), "lift");
 }
 
+bool Mover::TiltsFrom(const RigidTransform& X_BE, const std::vector<Vector3>& rotations_B) const {
+  MotionOptions options = Options(0.25, 1.0);
+  const MotionResult line = planner_.PlanLine(q_, X_BE, options);
+  const auto* there = std::get_if<CheckedTrajectory>(&line);
+  if (there == nullptr) return false;
+  options = MotionOptions();
+  options.opening_m = opening_m_;
+  for (const Vector3& rotation_B : rotations_B) {
+    const MotionResult tilt = planner_.PlanTilt(EndOf(*there), rotation_B, options);
+    if (std::holds_alternative<MotionRejection>(tilt)) return false;
+  }
+  return true;
+}
+
 void Mover::Tilt(const Vector3& rotation_B, double speed_rad_s) {
   MotionOptions options;
   options.turn_speed_rad_s = speed_rad_s;

@@ -58,6 +58,9 @@ class Mover {
   /// Whether the arm can put E there, tool pointing down.
   bool Reaches(const RigidTransform& X_BE) const;
 
+  /// Whether Line to the pose and each Tilt from there would be run.
+  bool TiltsFrom(const RigidTransform& X_BE, const std::vector<Vector3>& rotations_B) const;
+
   /// Opening of the pads from now on, for the clearance of the fingers.
   void SetOpening(double opening_m) { opening_m_ = opening_m; }
 

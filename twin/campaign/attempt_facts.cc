@@ -22,7 +22,8 @@ std::vector<AttemptFacts> FactsOf(const RoundRecord& record) {
   std::vector<AttemptFacts> out;
   const int start = record.summary["tubes_start"];
   const bool crashed = IsFaultSummary(record.summary);
-  int placed_before = 0, outside_before = 0;
+  int placed_before = record.summary.value("placed_before", 0);
+  int outside_before = record.summary.value("outside_before", 0);
   for (const Json& row : record.picks) {
     AttemptFacts facts;
     facts.row = &row;

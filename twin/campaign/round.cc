@@ -66,9 +66,7 @@ class RoundRecorder : public CycleObserver {
   }
   void OnDetection(const Detection&) override { scorer_.AtDetection(); }
 
-  void OnSeveral(const HeldState& state) override {
-    if (on_several) on_several(state, scorer_.State());
-  }
+  void OnSeveral(const HeldState& state) override { on_several(state, scorer_.State()); }
 
   void OnAttemptEnd(const AttemptReport& report) override {
     rows.push_back(scorer_.AttemptRow(report, 0));
@@ -93,7 +91,7 @@ class RoundRecorder : public CycleObserver {
   void Resume(const JsonView& scorer) { scorer_.Restore(scorer); }
 
   std::vector<Json> rows, timings;
-  /// Told of the moment when several hang, with the scorer's state; may be empty.
+  /// Told of the moment when several hang, with the scorer's state.
   std::function<void(const HeldState&, const Json&)> on_several;
 
  private:
@@ -227,12 +225,12 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
 
   RoundRecorder recorder(twin, pile, std::move(visuals), options);
   fs::remove(out / kHeldRoundFile);
-  if (scenario.cycle.end_at_several) {
-    recorder.on_several = [&](const HeldState& state, const Json& scorer) {
-      SaveHeldRound(pile, scenario.seed, twin.State(), state, scorer,
-                    (out / kHeldRoundFile).string());
-    };
-  }
+  recorder.on_several = [&](const HeldState& state, const Json& scorer) {
+    twin.WakeAll();  // Whether it is stored or not: both go on alike.
+    if (!scenario.cycle.end_at_several) return;
+    SaveHeldRound(pile, scenario.seed, twin.State(), state, scorer,
+                  (out / kHeldRoundFile).string());
+  };
   const PickCycleSetup setup = CycleSetup(scenario, asked.part, options);
   const RoundReport report =
       held ? GoOn(*held, twin, setup, recorder) : RunPickCycle(twin.cell(), setup, recorder);

@@ -58,7 +58,9 @@ RoundScorer::RoundScorer(const TwinCell& cell, int tubes_start)
     : truth_(cell), tubes_start_(tubes_start) {}
 
 Json RoundScorer::State() const {
-  return Json{{"placed_ids", placed_ids_}, {"outside_ids", outside_ids_}};
+  return Json{{"placed_ids", tray_.placed_ids},
+              {"arrived_ids", tray_.arrived_ids},
+              {"outside_ids", outside_ids_}};
 }
 
 void RoundScorer::Restore(const JsonView& state) {
@@ -68,8 +70,11 @@ void RoundScorer::Restore(const JsonView& state) {
       ids.push_back(static_cast<int>(view.Item(i).AsInteger()));
     }
   };
-  read("placed_ids", placed_ids_);
+  read("placed_ids", tray_.placed_ids);
+  read("arrived_ids", tray_.arrived_ids);
   read("outside_ids", outside_ids_);
+  placed_before_ = static_cast<int>(tray_.placed_ids.size());
+  outside_before_ = static_cast<int>(outside_ids_.size());
 }
 
 void RoundScorer::AtDetection() { held_at_detection_ = truth_.Held(); }
@@ -151,6 +156,9 @@ Json RoundScorer::Summary(const RoundReport& report, double sim_s) const {
   Json out;
   out["schema"] = "tubetwin/summary/1";
   out["tubes_start"] = tubes_start_;
+  // Of a round that began in the middle.
+  if (placed_before_ > 0) out["placed_before"] = placed_before_;
+  if (outside_before_ > 0) out["outside_before"] = outside_before_;
   out["placed"] = placed;
   out["attempts"] = attempts_;
   const auto success = Wilson95(successes_, attempts_);

@@ -27,7 +27,7 @@ class RoundScorer {
  public:
   RoundScorer(const TwinCell& cell, int tubes_start);
 
-  /// What rows to come depend on: {placed_ids, outside_ids}, and back.
+  /// What rows to come depend on: {placed_ids, arrived_ids, outside_ids}, and back.
   Json State() const;
   void Restore(const JsonView& state);
 
@@ -43,6 +43,7 @@ class RoundScorer {
  private:
   Truth truth_;
   int tubes_start_ = 0;
+  int placed_before_ = 0, outside_before_ = 0;  ///< Of a restored round.
   int held_at_detection_ = 0;
   TrayCount tray_;
   std::vector<int> outside_ids_;

@@ -173,14 +173,30 @@ void CellWorld::Step() {
   }
 }
 
+void CellWorld::WakeAll() {
+  std::vector<mjtNum> state(mj_stateSize(model_.get(), mjSTATE_INTEGRATION));
+  GuardEngine([&] { mj_getState(model_.get(), data_.get(), state.data(), mjSTATE_INTEGRATION); });
+  SetAwake(state);
+}
+
+void CellWorld::SetAwake(const std::vector<double>& integration) {
+  GuardEngine([&] {
+    const auto set = [&] {
+      mj_setState(model_.get(), data_.get(), integration.data(), mjSTATE_INTEGRATION);
+    };
+    mj_resetData(model_.get(), data_.get());
+    set();
+    mj_forward(model_.get(), data_.get());
+    set();  // The forward pass replaced the warm start.
+    mj_step1(model_.get(), data_.get());
+    pad_contacts_->Correct(*data_);
+  });
+}
+
 Json CellWorld::State() const {
   std::vector<mjtNum> state(mj_stateSize(model_.get(), mjSTATE_INTEGRATION));
   GuardEngine([&] { mj_getState(model_.get(), data_.get(), state.data(), mjSTATE_INTEGRATION); });
-  return Json{
-      {"steps", steps_},
-      {"world", Fingerprint(Xml())},
-      {"integration", state},
-      {"tree_asleep", std::vector<int>(data_->tree_asleep, data_->tree_asleep + model_->ntree)}};
+  return Json{{"steps", steps_}, {"world", Fingerprint(Xml())}, {"integration", state}};
 }
 
 void CellWorld::Restore(const JsonView& state) {
@@ -189,23 +205,10 @@ void CellWorld::Restore(const JsonView& state) {
     world.Fail("the state belongs to another cell: its pile, physics or program differ");
   }
   const std::vector<double> integration = state.Field("integration").AsNumbers();
-  const std::vector<double> asleep = state.Field("tree_asleep").AsNumbers();
-  if (static_cast<int>(integration.size()) != mj_stateSize(model_.get(), mjSTATE_INTEGRATION) ||
-      static_cast<int>(asleep.size()) != model_->ntree) {
+  if (static_cast<int>(integration.size()) != mj_stateSize(model_.get(), mjSTATE_INTEGRATION)) {
     state.Fail("the state has another size than the cell's");
   }
-  GuardEngine([&] {
-    const auto set = [&] {
-      mj_setState(model_.get(), data_.get(), integration.data(), mjSTATE_INTEGRATION);
-    };
-    // Once awake, for what derives from the positions of sleeping tubes is kept, not computed.
-    set();
-    mj_forward(model_.get(), data_.get());
-    set();
-    std::copy(asleep.begin(), asleep.end(), data_->tree_asleep);
-    mj_step1(model_.get(), data_.get());
-    pad_contacts_->Correct(*data_);
-  });
+  SetAwake(integration);
   steps_ = state.Field("steps").AsInteger();
 }
 

@@ -40,9 +40,10 @@ class CellWorld {
   /// Error(kInternal) naming the time when the world diverges or the engine runs out of memory.
   void Step();
 
-  /// The engine's state, which tubes sleep, and time, and back. From one state the steps are always
-  /// the same, and they were those of the world it was taken from where no tube slept. With five
-  /// asleep a put-back took 11 ms longer than there (why is not known). Restore throws
+  /// Wakes sleeping tubes: from here on a restored world goes the same way as this one.
+  void WakeAll();
+  /// The engine's state and time, and back, all tubes awake. After WakeAll the steps from a
+  /// restored state are bit by bit those of the world it was taken from. Restore throws
   /// Error(kBadData) when the state is that of another world.
   Json State() const;
   void Restore(const JsonView& state);
@@ -58,6 +59,8 @@ class CellWorld {
   int TubeOfGeom(int geom) const { return tube_of_geom_[geom]; }
 
  private:
+  void SetAwake(const std::vector<double>& integration);
+
   void CompileWithStart(const JointVector& q_home);
   void MapGeoms(const Pile& pile);
 

@@ -56,6 +56,8 @@ void TwinCell::SetFrameObserver(std::function<void()> observer) {
   impl_->observer = std::move(observer);
 }
 
+void TwinCell::WakeAll() { impl_->world.WakeAll(); }
+
 Json TwinCell::State() const {
   return Json{{"world", impl_->world.State()},           {"arm", impl_->arm.StoredState()},
               {"gripper", impl_->gripper.StoredState()}, {"wrist", impl_->wrist.StoredState()},

@@ -34,11 +34,14 @@ class TwinCell {
   /// recordings. Must not change the world.
   void SetFrameObserver(std::function<void()> observer);
 
+  /// Wakes sleeping tubes. What is stored is awake: a cell that goes on as its stored state would
+  /// wakes them at the same moment.
+  void WakeAll();
   /// All that the cell's future depends on, of a cell at rest: no trajectory runs, no scan waits.
   Json State() const;
-  /// Goes on from such a state, as the cell it was taken from, on the same machine type: bit by bit
-  /// but for what CellWorld::Restore says of sleeping tubes; always the same from one state.
-  /// The cell must have been made from the same pile and options. Throws Error(kBadData).
+  /// Goes on from such a state, on the same machine type bit by bit as the cell it was taken from
+  /// after WakeAll. The cell must have been made from the same pile and options. Throws
+  /// Error(kBadData).
   void Restore(const JsonView& state);
 
   /// The compiled model as XML (cell.xml).
