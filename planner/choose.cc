@@ -270,6 +270,10 @@ class Chooser {
       option.plan.motion = motion;
       option.plan.grasp = grasp;
       option.plan.used_simulator = score != nullptr;
+      if (score != nullptr) {
+        option.plan.prediction = Prediction{score->displacement_m, score->extra_probability,
+                                            static_cast<int>(score->samples.size())};
+      }
       option.plan.cost = grasp.cost + config_.weight_confidence * (1.0 - tube.confidence) +
                          (score != nullptr ? config_.weight_extra * score->extra_probability : 0.0);
       option.plan.note = jams ? "the motion jammed in the simulator" : target.doubt;

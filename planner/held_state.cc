@@ -45,7 +45,8 @@ Json PlanJson(const PickPlan& plan) {
               {"X_NG", MatrixJson(plan.grasp.X_NG)},
               {"at_m", plan.grasp.at_m},
               {"opening_m", plan.grasp.opening_m},
-              {"used_simulator", plan.used_simulator}};
+              {"used_simulator", plan.used_simulator},
+              {"prediction", ToJson(plan.prediction)}};
 }
 
 PickPlan PlanFromJson(const JsonView& view) {
@@ -59,6 +60,11 @@ PickPlan PlanFromJson(const JsonView& view) {
   plan.grasp.at_m = view.Field("at_m").AsNumber();
   plan.grasp.opening_m = view.Field("opening_m").AsNumber();
   plan.used_simulator = view.Field("used_simulator").AsBool();
+  if (const auto prediction = view.Optional("prediction")) {
+    plan.prediction = Prediction{prediction->Field("displacement_m").AsNumber(),
+                                 prediction->Field("extra_probability").AsNumber(),
+                                 static_cast<int>(prediction->Field("samples").AsInteger())};
+  }
   return plan;
 }
 

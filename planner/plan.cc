@@ -49,6 +49,13 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
   v.Field("lift_speed_m_s", "speed of the motions after the grasp", lift_speed_m_s, {0.01, 2.0});
 }
 
+Json ToJson(const std::optional<Prediction>& prediction) {
+  if (!prediction) return nullptr;
+  return Json{{"displacement_m", prediction->displacement_m},
+              {"extra_probability", prediction->extra_probability},
+              {"samples", prediction->samples}};
+}
+
 Json ToJson(const PlanResult& result) {
   Json json = {{"schema", "tubetwin/plan/1"},
                {"frame", "bin"},
@@ -66,6 +73,7 @@ Json ToJson(const PlanResult& result) {
                                  {"clearance_m", plan.grasp.clearance_m},
                                  {"cost", plan.grasp.cost}}},
                                {"used_simulator", plan.used_simulator},
+                               {"prediction", ToJson(plan.prediction)},
                                {"cost", plan.cost},
                                {"note", plan.note}});
   }

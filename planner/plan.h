@@ -66,6 +66,13 @@ struct Rejection {
   std::string motion, grasp, reason;
 };
 
+/// What the evaluator expects of a motion.
+struct Prediction {
+  double displacement_m = 0.0;
+  double extra_probability = 0.0;
+  int samples = 0;  ///< Roll-outs behind it; 0: the motion touches nothing.
+};
+
 /// One ranked way to pick: everything the pick cycle needs, arm-feasible as checked.
 struct PickPlan {
   int target = 0;
@@ -73,6 +80,7 @@ struct PickPlan {
   CandidateMotion motion;
   Grasp grasp;
   bool used_simulator = false;
+  std::optional<Prediction> prediction;  ///< Of covered tubes.
   double cost = 0.0;
   std::string note;  ///< Why it is ranked last, when doubt about the tube puts it there.
 };
@@ -84,6 +92,8 @@ struct PlanResult {
   EvaluationResult evaluation;                 ///< Empty when the simulator was not needed.
   double planning_s = 0.0, evaluator_s = 0.0;  ///< Wall.
 };
+/// Null when there is none.
+Json ToJson(const std::optional<Prediction>& prediction);
 /// plan.json (schema tubetwin/plan/1).
 Json ToJson(const PlanResult& result);
 

@@ -35,6 +35,15 @@ PileTube TubeToBuild(const PerceivedTube& tube, const Part& part, const Vector3&
   return build;
 }
 
+std::vector<PileTube> TubesToBuild(const TubeScene& scene, const Part& part,
+                                   const SampleDraw& draw) {
+  std::vector<PileTube> out;
+  for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
+    out.push_back(TubeToBuild(scene.tubes[i], part, draw.shift_N[i]));
+  }
+  return out;
+}
+
 void SetServo(mjSpec& spec, const std::string& joint, double stiffness, double damping,
               double limit) {
   mjsActuator* servo = mjs_addActuator(&spec, nullptr);
@@ -73,6 +82,12 @@ SampleDraw DrawSample(const Part& part, int tubes, int sample, std::uint64_t see
 
 RolloutScene::RolloutScene(const TubeScene& scene, const Part& part, const Bin& bin,
                            const SampleDraw& draw, const EvaluatorConfig& config)
+    : RolloutScene(TubesToBuild(scene, part, draw), part, bin, draw.friction,
+                   draw.bending_stiffness_Nm2, config) {}
+
+RolloutScene::RolloutScene(const std::vector<PileTube>& tubes, const Part& part, const Bin& bin,
+                           double friction, double bending_stiffness_Nm2,
+                           const EvaluatorConfig& config)
     : wall_m_(bin.wall_m()) {
   EngineOptions engine;
   engine.timestep_s = config.timestep_s;
@@ -81,21 +96,20 @@ RolloutScene::RolloutScene(const TubeScene& scene, const Part& part, const Bin& 
   // Contacts may not be stiffer than two time steps.
   const double contact_s = std::max(0.005, 2.0 * config.timestep_s);
   BinBodyOptions bin_options;
-  bin_options.friction = draw.friction;
+  bin_options.friction = friction;
   bin_options.contact_time_s = contact_s;
   AddBin(*spec, bin, bin_options);
   // What falls out of the bin lands somewhere.
   AddGround(*spec, Translation(0, 0, -kTableBelow_m), bin_options);
 
   RoundPhysics physics = NominalPhysics(part);
-  physics.tube_friction = draw.friction;
-  physics.bending_stiffness_Nm2 = draw.bending_stiffness_Nm2;
+  physics.tube_friction = friction;
+  physics.bending_stiffness_Nm2 = bending_stiffness_Nm2;
   TubeBodyOptions options = MakeTubeBodyOptions(part, physics, RigidTransform::Identity());
   options.contact_time_s = contact_s;
-  tubes_.reserve(scene.tubes.size());
-  for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
-    tubes_.emplace_back(*spec, "tube" + std::to_string(i),
-                        TubeToBuild(scene.tubes[i], part, draw.shift_N[i]), options);
+  tubes_.reserve(tubes.size());
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    tubes_.emplace_back(*spec, "tube" + std::to_string(i), tubes[i], options);
   }
   AddHand(*spec, config.hand_force_N);
   model_ = Compile(*spec, "evaluator");

@@ -30,6 +30,9 @@ class RolloutScene {
 
   RolloutScene(const TubeScene& scene, const Part& part, const Bin& bin, const SampleDraw& draw,
                const EvaluatorConfig& config);
+  /// Tubes as they are, with masses and rest shapes, under one friction and bending stiffness.
+  RolloutScene(const std::vector<PileTube>& tubes, const Part& part, const Bin& bin,
+               double friction, double bending_stiffness_Nm2, const EvaluatorConfig& config);
 
   const mjModel& model() const { return *model_; }
   StepStatus status() const { return status_; }  ///< Of settling; the rest holds only when kOk.

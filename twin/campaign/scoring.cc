@@ -112,6 +112,7 @@ Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
   row["motion"] = report.plan ? MotionJson(*report.plan) : Json(nullptr);
   row["grasp"] = report.plan ? GraspJson(*report.plan) : Json(nullptr);
   row["used_simulator"] = report.plan ? report.plan->used_simulator : false;
+  row["prediction"] = report.plan ? ToJson(report.plan->prediction) : Json(nullptr);
   row["detection"] = DetectionJson(report.detection);
   row["resolution"] =
       Json{{"used", report.resolution_used},
@@ -186,6 +187,7 @@ Json FaultRow(const std::string& reason) {
     row[unknown] = nullptr;
   }
   row["used_simulator"] = false;
+  row["prediction"] = nullptr;
   row["detection"] = nullptr;
   row["resolution"] = Json{{"used", false}, {"strategy", nullptr}, {"outcome", nullptr}};
   row["outcome"] = ToString(AttemptOutcome::kFault);
