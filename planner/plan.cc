@@ -29,6 +29,10 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
   v.Field("weight_confidence", "weight of doubt about the tube", weight_confidence, {0.0, 10.0});
   v.Field("weight_extra", "weight of the probability that another tube comes along", weight_extra,
           {0.0, 10.0});
+  v.Field("accept_extra",
+          "more covered tubes are evaluated while the best motion brings another tube along with a "
+          "larger probability",
+          accept_extra, {0.0, 1.0});
   v.Field("max_displacement_m", "displacement from which on all motions are equally bad",
           max_displacement_m, {0.01, 100.0});
   v.Field("min_length_share", "tubes shorter than this share of the part come last",

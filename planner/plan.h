@@ -31,12 +31,14 @@ struct PlannerConfig {
   double weight_height = 0.2, weight_centre = 0.5, weight_trajectory = 0.3;
   double weight_clearance = 0.1;   ///< Not in the paper: little room around the fingers costs.
   double weight_confidence = 0.2;  ///< Not in the paper: doubt about the tube costs.
-  double weight_extra = 1.0;       ///< Not in the paper: probability that another tube comes along.
+  double weight_extra = 3.0;       ///< Not in the paper: probability that another tube comes along.
   double max_displacement_m = 1.0;
   double min_length_share = 0.7;  ///< Tubes shorter than this share of the part come last.
   double min_confidence = 0.3;    ///< Tubes below come last.
-  int samples = 3;                ///< Roll-outs of the best candidates; 1 is the paper's cost.
-  int refined = 4;                ///< So many of the best candidates get all samples.
+  /// Not in the paper: more tubes are evaluated while another one comes along more often than this.
+  double accept_extra = 0.15;
+  int samples = 5;          ///< Roll-outs of the best candidates; 1 is the paper's cost.
+  int refined = 4;          ///< So many of the best candidates get all samples.
   int max_candidates = 12;  ///< Motions that are simulated before it is known whether one will do.
   int max_plans = 8;        ///< Ranked plans that are checked for the arm and returned.
   int plans_per_tube = 3;
