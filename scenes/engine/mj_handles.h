@@ -34,8 +34,8 @@ struct EngineOptions {
 };
 
 /// An empty scene, angles in radians, with `options`: discrete integrator (joint springs and
-/// servos implicit), elliptic cone, Newton to 1e-8, no automatic reset after divergence.
-/// Throws Error(kInternal) for a wrong engine version (InitEngine).
+/// servos implicit), elliptic cone, Newton to 1e-8 on sparse matrices, no automatic reset after
+/// divergence. Throws Error(kInternal) for a wrong engine version (InitEngine).
 MjSpec MakeSpec(const EngineOptions& options = {});
 
 /// Compiles; `what` names the scene in errors. Throws Error(kInternal) with the compiler's text.
