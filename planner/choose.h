@@ -15,10 +15,6 @@ namespace tubetwin {
 using FeasibilityFunction =
     std::function<std::optional<std::string>(const Grasp& grasp, const CandidateMotion& motion)>;
 
-/// Probability that another tube comes along: the samples' share drawn towards what the predicted
-/// displacement says, which counts as some samples. A motion that touches nothing: 0.
-double ExtraProbability(const CandidateScore& score, const Part& part);
-
 /// What to pick and how, best first. Free tubes go straight up without asking the simulator (Leão
 /// et al. 2020, section 3.3); only when no plan for one survives, or `config.exclude_free`, the
 /// motions of covered tubes are scored by `evaluate`: the least covered tubes first, in batches of

@@ -233,6 +233,13 @@ GraspSet RankGrasps(const GraspSites& sites, const PerceivedTube& tube,
           {tube.id, motion.name, name, "this section would pass under the other tube"});
       continue;
     }
+    if (std::any_of(motion.blocked_m.begin(), motion.blocked_m.end(), [&](const auto& range) {
+          return range.first <= grasp.at_m && grasp.at_m <= range.second;
+        })) {
+      set.rejections.push_back(
+          {tube.id, motion.name, name, "the gripper would run into another tube on the way"});
+      continue;
+    }
     const GripperBoxes boxes = MakeGripperBoxes(grasp.opening_m, tube.radius_m, 0.0);
     double to_wall = kEnough_m;
     for (std::size_t k = 1; k < motion.waypoints_N.size(); ++k) {

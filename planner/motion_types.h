@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hw_bridge/base/json_fwd.h"
@@ -21,6 +22,8 @@ struct CandidateMotion {
   double speed_m_s = 0.25;
   /// Escape: arc length range of the tube that passes under the occluder; no grasp there.
   double forbidden_from_m = 1.0, forbidden_to_m = 0.0;  ///< Empty when from > to.
+  /// More such ranges: the gripper would run into another tube there.
+  std::vector<std::pair<double, double>> blocked_m;
 };
 
 /// One candidate's score (scores.json).

@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/text.h"
+#include "planner/wall_room.h"
 
 namespace tubetwin {
 namespace {
 
 constexpr double kStretchStep_m = 0.002;
-constexpr double kSlack_m = 0.002;
 constexpr double kSameSlide_m = 0.005;
 constexpr double kStretchMax_m = 0.15;  // Tubes that lie along each other do not hide for ever.
 
@@ -28,30 +27,6 @@ const PerceivedTube& TubeOf(const TubeScene& scene, int id) {
   }
   TT_CHECK(!"a crossing names a tube of the scene");
   return scene.tubes.front();
-}
-
-// How far a box [low, high] may move by t * direction (t >= 0) along one axis within +-half less
-// the safety distance. A box that is already nearer to the wall may come kSlack_m nearer still, so
-// that a tube at a wall can slide along it although its line is not exactly parallel.
-double AllowedTravel(double low, double high, double direction, double half, double safety) {
-  if (std::abs(direction) < 1e-9) return std::numeric_limits<double>::infinity();
-  const double to_wall = direction > 0 ? half - high : low + half;
-  const double room = std::max(to_wall - safety, std::min(to_wall, kSlack_m));
-  return std::max(0.0, room) / std::abs(direction);
-}
-
-// Largest slide along `direction` (unit, horizontal) that keeps the whole tube off the walls.
-double AllowedSlide(const PerceivedTube& tube, const Vector3& direction, const Bin& bin,
-                    double safety_m) {
-  Vector3 low = tube.centerline_N.front(), high = low;
-  for (const Vector3& p : tube.centerline_N) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const double r = tube.radius_m;
-  return std::min(
-      AllowedTravel(low.x() - r, high.x() + r, direction.x(), bin.half_x_m(), safety_m),
-      AllowedTravel(low.y() - r, high.y() + r, direction.y(), bin.half_y_m(), safety_m));
 }
 
 std::string EscapeName(int sign, int index) {

@@ -33,6 +33,10 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
           "more covered tubes are evaluated while the best motion brings another tube along with a "
           "larger probability",
           accept_extra, {0.0, 1.0});
+  v.Field("separated",
+          "so many covered tubes get the long list of motions (shakes, hemisphere, helices) where "
+          "nothing else takes a tube alone",
+          separated, {0, 100});
   v.Field("max_displacement_m", "displacement from which on all motions are equally bad",
           max_displacement_m, {0.01, 100.0});
   v.Field("min_length_share", "tubes shorter than this share of the part come last",

@@ -37,6 +37,9 @@ struct PlannerConfig {
   double min_confidence = 0.3;    ///< Tubes below come last.
   /// Not in the paper: more tubes are evaluated while another one comes along more often than this.
   double accept_extra = 0.15;
+  /// So many tubes get the long list of motions where none of the short one promises to take a tube
+  /// alone. 0: none, as in the paper.
+  int separated = 1;
   int samples = 5;          ///< Roll-outs of the best candidates; 1 is the paper's cost.
   int refined = 4;          ///< So many of the best candidates get all samples.
   int max_candidates = 12;  ///< Motions that are simulated before it is known whether one will do.

@@ -13,10 +13,10 @@ namespace {
 using Status = CandidateScore::Status;
 
 constexpr double kRamp_s = 0.15;
-constexpr double kSaturated = 0.99;  // Of the hand's force limit.
-constexpr double kRaised_m = 0.03;   // A tube that was over the rim before did not come along.
+constexpr double kSaturated = 0.99;       // Of the hand's force limit.
+constexpr double kRaised_m = 0.03;        // A tube that was over the rim before did not come along.
 constexpr double kOthersRest_m_s = 0.02;  // What they still do then is below 1 mm.
-constexpr int kLookEvery = 10;  // Steps between looks for an early end.
+constexpr int kLookEvery = 10;            // Steps between looks for an early end.
 
 struct HeightRange {
   double low = std::numeric_limits<double>::infinity();

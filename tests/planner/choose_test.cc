@@ -206,7 +206,7 @@ TEST_CASE("plan.json lists ranking, candidates and reasons", "[unit]") {
   CHECK(json["schema"] == "tubetwin/plan/1");
   CHECK(json["ranking"].size() == 3);
   CHECK(json["ranking"][0]["class"] == "weak");
-  CHECK(json["candidates"].size() == 3);
+  CHECK(json["candidates"].size() == 5);  // up, two escapes, two ways out.
   CHECK(json["evaluation"]["schema"] == "tubetwin/scores/1");
   CHECK(json["evaluation"]["candidates"][1]["status"] == "jammed");
 }

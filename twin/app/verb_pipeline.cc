@@ -11,7 +11,7 @@
 #include "planner/arm_feasibility.h"
 #include "planner/choose.h"
 #include "planner/evaluator/evaluator.h"
-#include "planner/motions.h"
+#include "planner/more_motions.h"
 #include "twin/app/common.h"
 #include "twin/render/scan_geometry.h"
 
@@ -148,9 +148,14 @@ EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
   for (const PerceivedTube& tube : scene.tubes) {
     if (given.tube && tube.id != *given.tube) continue;
     found = true;
-    for (CandidateMotion& motion : MakeMotions(scene, tube, pile.bin, planner).motions) {
-      const bool up = motion.name == "up";
-      if ((given.motions == "up" && !up) || (given.motions == "escape" && up)) continue;
+    std::vector<CandidateMotion> motions = MakeMotions(scene, tube, pile.bin, planner).motions;
+    for (const MotionSet& set :
+         {MakeWaysOut(scene, tube, pile.bin, planner), MakeSeparations(tube, pile.bin, planner)}) {
+      motions.insert(motions.end(), set.motions.begin(), set.motions.end());
+    }
+    for (CandidateMotion& motion : motions) {
+      const bool up = motion.name == "up", escape = motion.name.rfind("escape", 0) == 0;
+      if ((given.motions == "up" && !up) || (given.motions == "escape" && !escape)) continue;
       request.grasp_at_m.push_back(0.5 * tube.length_m);
       request.candidates.push_back(std::move(motion));
     }

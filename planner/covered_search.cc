@@ -1,0 +1,195 @@
+#include "planner/covered_search.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "hw_bridge/base/error.h"
+#include "planner/more_motions.h"
+
+namespace tubetwin {
+namespace {
+
+// How often another tube came along by the displacement that was predicted
+// (tests/benchmark/lifts.sh, hose_b threaded, seeds 1 to 23): 0 of 34 below 5 cm, 1 of 32 to 10 cm,
+// 17 % to 20 cm, 50 % to 30 cm, 71 % to 50 cm, 89 % beyond. It counts as so many samples.
+constexpr double kExtraPerMetre = 2.2, kQuiet_m = 0.05, kLeastExtra = 0.02, kMostExtra = 0.9;
+constexpr double kPriorSamples = 5.0;
+
+double WallSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+bool IsFree(const Target& target) { return target.tube->tube_class == TubeClass::kFree; }
+
+}  // namespace
+
+Rank RankOf(bool free, bool doubtful, const CandidateScore* score) {
+  if (score != nullptr && score->status == CandidateScore::Status::kJammed) return Rank::kJams;
+  if (!doubtful) return free ? Rank::kCertainFree : Rank::kCertainCovered;
+  return free ? Rank::kDoubtfulFree : Rank::kDoubtfulCovered;
+}
+
+double ExtraProbability(const CandidateScore& score, const Part& part) {
+  if (score.status == CandidateScore::Status::kPruned) return 0.0;
+  const double expected =
+      std::clamp(kExtraPerMetre * (score.displacement_m - kQuiet_m), kLeastExtra, kMostExtra);
+  const double weight = part.is_hose() ? kPriorSamples : 1.0;
+  const double n = static_cast<double>(score.samples.size());
+  return (n * score.extra_probability + weight * expected) / (n + weight);
+}
+
+CoveredSearch::CoveredSearch(const SearchInput& input, const std::vector<Target>& targets,
+                             PlanResult& result)
+    : input_(input),
+      targets_(targets),
+      result_(result),
+      separated_(input.config.separated <= 0 || targets.empty()) {}
+
+bool CoveredSearch::Exhausted() const { return next_ == targets_.size() && separated_; }
+
+bool CoveredSearch::Next() {
+  if (Exhausted()) return false;
+  do {
+    ScoreMore();
+    Refine();
+  } while (!Exhausted() && !AnyPromising());
+  return true;
+}
+
+void CoveredSearch::Finish() {
+  EvaluationResult& out = result_.evaluation;
+  for (Scored& scored : scored_) out.candidates.push_back(std::move(scored.score));
+  for (std::size_t k = 0; k < out.candidates.size(); ++k) {
+    if (out.best < 0 || out.candidates[k].cost < out.candidates[out.best].cost) {
+      out.best = static_cast<int>(k);
+    }
+  }
+}
+
+void CoveredSearch::ScoreMore() {
+  const std::size_t first = scored_.size();
+  if (next_ == targets_.size()) {
+    AddSeparations();
+    separated_ = true;
+  }
+  while (next_ < targets_.size() &&
+         static_cast<int>(scored_.size() - first) < input_.config.max_candidates) {
+    AddMotions(targets_[next_++]);
+  }
+  ScreenFrom(first);
+}
+
+void CoveredSearch::AddSeparations() {
+  std::vector<const Target*> chosen;
+  for (const Scored* scored : InOrder()) {
+    if (static_cast<int>(chosen.size()) >= input_.config.separated) break;
+    if (std::find(chosen.begin(), chosen.end(), scored->target) == chosen.end()) {
+      chosen.push_back(scored->target);
+    }
+  }
+  for (const Target* target : chosen) {
+    AddMotions(*target, MakeSeparations(*target->tube, input_.bin, input_.config));
+  }
+}
+
+void CoveredSearch::AddMotions(const Target& target) {
+  AddMotions(target, MakeMotions(input_.scene, *target.tube, input_.bin, input_.config));
+  if (input_.config.classes == "occluded_joints") return;  // The paper's own candidates.
+  AddMotions(target, MakeWaysOut(input_.scene, *target.tube, input_.bin, input_.config));
+}
+
+void CoveredSearch::AddMotions(const Target& target, MotionSet set) {
+  const auto report = [this](const std::vector<Rejection>& rejections) {
+    result_.rejections.insert(result_.rejections.end(), rejections.begin(), rejections.end());
+  };
+  report(set.rejections);
+  for (CandidateMotion& motion : set.motions) {
+    result_.candidates.push_back(motion);
+    const GraspSet grasps = RankGrasps(target.sites, *target.tube, motion, 0.0, input_.top_m,
+                                       input_.bin, input_.config);
+    if (grasps.grasps.empty()) {
+      report(grasps.rejections);
+      report({{target.tube->id, motion.name, "", "no grasp suits this motion"}});
+      continue;
+    }
+    const Grasp& best = grasps.grasps.front();
+    scored_.push_back({&target, std::move(motion), best.at_m, best.cost, {}, 0});
+  }
+}
+
+void CoveredSearch::ScreenFrom(std::size_t first) {
+  std::vector<Scored*> all;
+  for (std::size_t k = first; k < scored_.size(); ++k) all.push_back(&scored_[k]);
+  Evaluate(all, 1);
+}
+
+void CoveredSearch::Refine() {
+  if (input_.config.samples <= 1) return;
+  for (;;) {
+    std::vector<Scored*> order = InOrder();
+    if (order.empty() || IsRefined(*order.front())) return;
+    order.resize(std::min<std::size_t>(order.size(), input_.config.refined));
+    std::erase_if(order, [this](const Scored* scored) { return IsRefined(*scored); });
+    Evaluate(order, input_.config.samples);
+  }
+}
+
+std::vector<Scored*> CoveredSearch::InOrder() {
+  std::vector<Scored*> order;
+  for (Scored& scored : scored_) order.push_back(&scored);
+  const auto rank = [](const Scored* scored) {
+    return RankOf(IsFree(*scored->target), !scored->target->doubt.empty(), &scored->score);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](const Scored* a, const Scored* b) {
+    const Rank rank_a = rank(a), rank_b = rank(b);
+    return rank_a != rank_b ? rank_a < rank_b : CostOf(*a) < CostOf(*b);
+  });
+  return order;
+}
+
+bool CoveredSearch::IsRefined(const Scored& scored) const {
+  return scored.score.status != CandidateScore::Status::kDone ||
+         scored.samples >= input_.config.samples;
+}
+
+double CoveredSearch::CostOf(const Scored& scored) const {
+  const PlannerConfig& config = input_.config;
+  const double share = std::min(scored.score.displacement_m / config.max_displacement_m, 1.0);
+  return scored.grasp_cost + config.weight_trajectory * share +
+         config.weight_confidence * (1.0 - scored.target->tube->confidence) +
+         config.weight_extra * ExtraProbability(scored.score, input_.part);
+}
+
+bool CoveredSearch::AnyPromising() const {
+  return std::any_of(scored_.begin(), scored_.end(), [this](const Scored& scored) {
+    return scored.target->doubt.empty() && IsRefined(scored) &&
+           (scored.score.status == CandidateScore::Status::kDone ||
+            scored.score.status == CandidateScore::Status::kPruned) &&
+           ExtraProbability(scored.score, input_.part) <= input_.config.accept_extra;
+  });
+}
+
+void CoveredSearch::Evaluate(const std::vector<Scored*>& motions, int samples) {
+  if (motions.empty()) return;
+  TT_CHECK(input_.evaluate);
+  EvaluationRequest request;
+  request.seed = input_.seed;
+  request.samples = samples;
+  for (const Scored* scored : motions) {
+    request.candidates.push_back(scored->motion);
+    request.grasp_at_m.push_back(scored->grasp_at_m);
+  }
+  const double start_s = WallSeconds();
+  const EvaluationResult answer = input_.evaluate(input_.scene, input_.part, input_.bin, request);
+  TT_CHECK(answer.candidates.size() == motions.size());
+  result_.evaluator_s += WallSeconds() - start_s;
+  result_.evaluation.settle_s += answer.settle_s;
+  result_.evaluation.wall_s += answer.wall_s;
+  result_.evaluation.threads = answer.threads;
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    motions[k]->score = answer.candidates[k];
+    motions[k]->samples = samples;
+  }
+}
+
+}  // namespace tubetwin

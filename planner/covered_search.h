@@ -1,0 +1,86 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planner/grasps.h"
+#include "planner/motions.h"
+#include "planner/plan.h"
+
+namespace tubetwin {
+
+/// Order of preference; within a rank the cost decides.
+enum class Rank { kCertainFree, kCertainCovered, kDoubtfulFree, kDoubtfulCovered, kJams };
+/// `score` null: the simulator was not asked.
+Rank RankOf(bool free, bool doubtful, const CandidateScore* score);
+
+/// A tube that can be grasped, with what was found out about it once.
+struct Target {
+  const PerceivedTube* tube = nullptr;
+  std::string doubt;  ///< Why it comes late; empty: for no reason.
+  GraspSites sites;
+};
+
+/// A motion of a covered tube and what the evaluator says of it.
+struct Scored {
+  const Target* target = nullptr;
+  CandidateMotion motion;
+  double grasp_at_m = 0.0, grasp_cost = 0.0;  ///< Where it would be held if all motions were good.
+  CandidateScore score;
+  int samples = 0;  ///< That were asked for.
+};
+
+/// Probability that another tube comes along: the samples' share drawn towards what the predicted
+/// displacement says, which counts as some samples. A motion that touches nothing: 0.
+double ExtraProbability(const CandidateScore& score, const Part& part);
+
+/// What a search needs to know; all must outlive it.
+struct SearchInput {
+  const TubeScene& scene;
+  const Part& part;
+  const Bin& bin;
+  const PlannerConfig& config;
+  const EvaluateFunction& evaluate;
+  std::uint64_t seed = 1;
+  double top_m = 0.0;  ///< Of the highest tube.
+};
+
+/// Scores motions of covered tubes in the order of `targets`, in batches of about `max_candidates`:
+/// "up", escapes and ways out of every tube, then the long list of separations for the `separated`
+/// best. Each motion is rolled out once, then the best `refined` with all samples, until the best
+/// of all has them: one lucky roll-out wins too easily among many. Candidates, rejections and times
+/// go into the result.
+class CoveredSearch {
+ public:
+  CoveredSearch(const SearchInput& input, const std::vector<Target>& targets, PlanResult& result);
+
+  /// Goes on until a motion promises to take its tube alone (`accept_extra`) or nothing is left to
+  /// score; false when nothing was left before.
+  bool Next();
+  const std::vector<Scored>& scored() const { return scored_; }
+  /// Moves the scores into the result.
+  void Finish();
+
+ private:
+  bool Exhausted() const;
+  void ScoreMore();
+  void AddSeparations();
+  void AddMotions(const Target& target);
+  void AddMotions(const Target& target, MotionSet set);
+  void ScreenFrom(std::size_t first);
+  void Refine();
+  std::vector<Scored*> InOrder();
+  bool IsRefined(const Scored& scored) const;
+  double CostOf(const Scored& scored) const;
+  bool AnyPromising() const;
+  void Evaluate(const std::vector<Scored*>& motions, int samples);
+
+  const SearchInput input_;
+  const std::vector<Target>& targets_;
+  PlanResult& result_;
+  std::size_t next_ = 0;
+  bool separated_ = false;
+  std::vector<Scored> scored_;
+};
+
+}  // namespace tubetwin

@@ -1,0 +1,110 @@
+#include "planner/more_motions.h"
+
+#include <set>
+
+#include "planner/sweep.h"
+#include "tests/support/catch.h"
+#include "tests/support/tube_scenes.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kRadius = 0.0125;
+constexpr double kStep_m = 0.020;  // Of the ways that are tried.
+
+// Tube 1 along x on the floor from -0.20 to 0.20, tube 2 over it along y at x = 0.10.
+TubeScene Cross() {
+  return PerfectScene({StraightLine({-0.20, 0, kRadius}, {0.20, 0, kRadius}),
+                       StraightLine({0.10, -0.2, 3 * kRadius}, {0.10, 0.2, 3 * kRadius})},
+                      kRadius);
+}
+
+const CandidateMotion* Find(const MotionSet& set, const std::string& name) {
+  for (const CandidateMotion& motion : set.motions) {
+    if (motion.name == name) return &motion;
+  }
+  return nullptr;
+}
+
+TEST_CASE("A free tube needs no way out", "[unit]") {
+  const TubeScene scene = Cross();
+  const MotionSet set = MakeWaysOut(scene, scene.tubes[1], Bin{}, PlannerConfig{});
+  CHECK(set.motions.empty());
+  CHECK(set.rejections.empty());
+}
+
+TEST_CASE("A drawer's way ends where nothing covers the tube any more", "[unit]") {
+  const TubeScene scene = Cross();
+  const MotionSet set = MakeWaysOut(scene, scene.tubes[0], Bin{}, PlannerConfig{});
+  const CandidateMotion* back = Find(set, "slide-");
+  REQUIRE(back != nullptr);
+  REQUIRE(back->waypoints_N.size() == 3);
+  const Vector3 slide = back->waypoints_N[1];
+  CHECK(slide.normalized().isApprox(-Vector3::UnitX()));
+  // Its front end at 0.20 must come before 0.10 less both radii.
+  CHECK(slide.norm() >= 0.10 + 2 * kRadius);
+  CHECK(slide.norm() <= 0.10 + 2 * kRadius + kStep_m + kRadius + 1e-9);
+  CHECK((back->waypoints_N[2] - slide).isApprox(Vector3(0, 0, 0.40)));
+  // Whatever slides under tube 2 cannot be held; the far end can.
+  const auto blocked = [&](double at_m) {
+    for (const auto& [from, to] : back->blocked_m) {
+      if (from <= at_m && at_m <= to) return true;
+    }
+    return false;
+  };
+  CHECK(blocked(0.38));
+  CHECK_FALSE(blocked(0.10));
+}
+
+TEST_CASE("The way out that touches nothing new is never longer than a drawer's", "[unit]") {
+  const TubeScene scene = Cross();
+  const MotionSet set = MakeWaysOut(scene, scene.tubes[0], Bin{}, PlannerConfig{});
+  const CandidateMotion *away = Find(set, "escape_away"), *back = Find(set, "slide-");
+  REQUIRE(away != nullptr);
+  REQUIRE(back != nullptr);
+  CHECK(away->waypoints_N[1].norm() <= back->waypoints_N[1].norm() + 1e-9);
+  CHECK_FALSE(FirstTouched(scene, *away));
+}
+
+TEST_CASE("A way out that the wall ends too early is refused with the reason", "[unit]") {
+  Bin narrow;
+  narrow.size_m = {0.46, 0.44, 0.09};
+  const TubeScene scene = Cross();
+  const MotionSet set = MakeWaysOut(scene, scene.tubes[0], narrow, PlannerConfig{});
+  CHECK(Find(set, "slide-") == nullptr);
+  REQUIRE_FALSE(set.rejections.empty());
+  CHECK(set.rejections[0].reason.find("still covered where the bin's wall ends the slide") == 0);
+}
+
+TEST_CASE("Separations have the published shapes and keep off the walls", "[unit]") {
+  const TubeScene scene = Cross();
+  const PlannerConfig config;
+  const MotionSet set = MakeSeparations(scene.tubes[0], Bin{}, config);
+  CHECK(set.motions.size() == 1 + 1 + 16 + 4);
+  std::set<std::string> names;
+  for (const CandidateMotion& motion : set.motions) names.insert(motion.name);
+  CHECK(names.size() == set.motions.size());
+  for (int k = 1; k <= 16; ++k) {
+    const CandidateMotion* to = Find(set, "hemisphere" + std::to_string(k));
+    REQUIRE(to != nullptr);
+    CHECK(to->waypoints_N[1].norm() == Approx(0.15));
+  }
+  const CandidateMotion *half = Find(set, "helix_half+"), *full = Find(set, "helix_full-");
+  REQUIRE(half != nullptr);
+  REQUIRE(full != nullptr);
+  // Half a turn ends across the circle, a whole one over its start.
+  CHECK(half->waypoints_N[4].head<2>().norm() == Approx(0.10));
+  CHECK(full->waypoints_N[8].head<2>().norm() == Approx(0.0).margin(1e-12));
+  CHECK(full->waypoints_N[8].z() == Approx(0.25));
+
+  Bin narrow;
+  narrow.size_m = {0.46, 0.44, 0.09};
+  for (const CandidateMotion& motion : MakeSeparations(scene.tubes[0], narrow, config).motions) {
+    for (const Vector3& p : motion.waypoints_N) {
+      CHECK(0.20 + kRadius + std::abs(p.x()) <= 0.23 - config.wall_safety_m + 1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tubetwin
