@@ -14,9 +14,26 @@ namespace {
 // 17 % to 20 cm, 50 % to 30 cm, 71 % to 50 cm, 89 % beyond. It counts as so many samples.
 constexpr double kExtraPerMetre = 2.2, kQuiet_m = 0.05, kLeastExtra = 0.02, kMostExtra = 0.9;
 constexpr double kPriorSamples = 5.0;
+constexpr int kSamplesAtOnce = 2;  // A motion that is bad in one of them need not be tried further.
 
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// The score over the samples of both.
+CandidateScore Merged(CandidateScore score, const CandidateScore& more) {
+  const double n = static_cast<double>(score.samples.size());
+  const double m = static_cast<double>(more.samples.size());
+  const auto mean = [&](double a, double b) { return n + m > 0.0 ? (n * a + m * b) / (n + m) : a; };
+  score.displacement_m = mean(score.displacement_m, more.displacement_m);
+  score.extra_probability = mean(score.extra_probability, more.extra_probability);
+  score.cost =
+      std::max(mean(score.cost, more.cost), score.displacement_m + score.extra_probability);
+  if (more.status != CandidateScore::Status::kDone) score.status = more.status;
+  score.sim_s += more.sim_s;
+  score.wall_s += more.wall_s;
+  score.samples.insert(score.samples.end(), more.samples.begin(), more.samples.end());
+  return score;
 }
 
 bool IsFree(const Target& target) { return target.tube->tube_class == TubeClass::kFree; }
@@ -120,17 +137,19 @@ void CoveredSearch::AddMotions(const Target& target, MotionSet set) {
 void CoveredSearch::ScreenFrom(std::size_t first) {
   std::vector<Scored*> all;
   for (std::size_t k = first; k < scored_.size(); ++k) all.push_back(&scored_[k]);
-  Evaluate(all, 1);
+  AddSamples(all, 1);
 }
 
 void CoveredSearch::Refine() {
-  if (input_.config.samples <= 1) return;
   for (;;) {
     std::vector<Scored*> order = InOrder();
     if (order.empty() || IsRefined(*order.front())) return;
     order.resize(std::min<std::size_t>(order.size(), input_.config.refined));
     std::erase_if(order, [this](const Scored* scored) { return IsRefined(*scored); });
-    Evaluate(order, input_.config.samples);
+    // Those with as many samples as the best: one question for all.
+    const int samples = order.front()->samples;
+    std::erase_if(order, [&](const Scored* scored) { return scored->samples != samples; });
+    AddSamples(order, std::min(kSamplesAtOnce, input_.config.samples - samples));
   }
 }
 
@@ -169,11 +188,12 @@ bool CoveredSearch::AnyPromising() const {
   });
 }
 
-void CoveredSearch::Evaluate(const std::vector<Scored*>& motions, int samples) {
+void CoveredSearch::AddSamples(const std::vector<Scored*>& motions, int samples) {
   if (motions.empty()) return;
   TT_CHECK(input_.evaluate);
   EvaluationRequest request;
   request.seed = input_.seed;
+  request.first_sample = motions.front()->samples;
   request.samples = samples;
   for (const Scored* scored : motions) {
     request.candidates.push_back(scored->motion);
@@ -187,8 +207,10 @@ void CoveredSearch::Evaluate(const std::vector<Scored*>& motions, int samples) {
   result_.evaluation.wall_s += answer.wall_s;
   result_.evaluation.threads = answer.threads;
   for (std::size_t k = 0; k < motions.size(); ++k) {
-    motions[k]->score = answer.candidates[k];
-    motions[k]->samples = samples;
+    Scored& scored = *motions[k];
+    scored.score =
+        scored.samples == 0 ? answer.candidates[k] : Merged(scored.score, answer.candidates[k]);
+    scored.samples += samples;
   }
 }
 

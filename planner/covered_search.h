@@ -73,7 +73,7 @@ class CoveredSearch {
   bool IsRefined(const Scored& scored) const;
   double CostOf(const Scored& scored) const;
   bool AnyPromising() const;
-  void Evaluate(const std::vector<Scored*>& motions, int samples);
+  void AddSamples(const std::vector<Scored*>& motions, int samples);
 
   const SearchInput input_;
   const std::vector<Target>& targets_;

@@ -45,7 +45,8 @@ struct EvaluationRequest {
   /// Arc length on each candidate's tube where the hand holds it.
   std::vector<double> grasp_at_m;
   int samples = 1;
-  bool full = false;  ///< Nothing pruned or cut short.
+  int first_sample = 0;  ///< Samples first_sample to first_sample + samples - 1 are rolled out.
+  bool full = false;     ///< Nothing pruned or cut short.
   std::uint64_t seed = 1;
 };
 

@@ -51,6 +51,7 @@ double Bottom(const Polyline& line) {
 struct Track {
   std::vector<Vector3> shifts;
   std::size_t rising_from = 0;
+  bool slides_first = false;  // What lies against the tube is dragged at once.
 };
 
 Track TrackOf(const CandidateMotion& motion) {
@@ -60,6 +61,7 @@ Track TrackOf(const CandidateMotion& motion) {
     const Vector3 from = motion.waypoints_N[k - 1], leg = motion.waypoints_N[k] - from;
     const int count = std::max(1, static_cast<int>(std::ceil(leg.norm() / kStep_m)));
     for (int i = 1; i <= count; ++i) track.shifts.push_back(from + leg * i / count);
+    if (k == 1) track.slides_first = leg.head<2>().norm() > 1e-9;
     if (leg.head<2>().norm() > 1e-9 || leg.z() < 0.0) track.rising_from = track.shifts.size() - 1;
   }
   return track;
@@ -69,6 +71,7 @@ bool Touches(const Polyline& moving, const Polyline& other, double radii_m, cons
              double margin_m) {
   const double bottom = Bottom(moving), top = Top(other);
   const double start = ClosestOfLines(moving, other).distance_m - radii_m;
+  if (track.slides_first && start < margin_m) return true;
   const double allowed = std::min(margin_m, start - kNearer_m);
   for (std::size_t k = 1; k < track.shifts.size(); ++k) {
     const Vector3& shift = track.shifts[k];

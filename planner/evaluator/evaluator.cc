@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cmath>
-#include <optional>
+#include <map>
+#include <memory>
+#include <mutex>
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/text.h"
@@ -34,7 +36,7 @@ int IndexOf(const TubeScene& scene, int id) {
 void Validate(const TubeScene& scene, const EvaluationRequest& request,
               const EvaluatorConfig& config) {
   TT_CHECK(request.grasp_at_m.size() == request.candidates.size());
-  TT_CHECK(request.samples >= 1);
+  TT_CHECK(request.samples >= 1 && request.first_sample >= 0);
   for (std::size_t k = 0; k < request.candidates.size(); ++k) {
     const CandidateMotion& candidate = request.candidates[k];
     const std::string who =
@@ -58,6 +60,56 @@ void Validate(const TubeScene& scene, const EvaluationRequest& request,
     }
   }
 }
+
+// Settled scenes of the pile that was asked about last: a planner asks several times. Thread safe.
+class SceneCache {
+ public:
+  using ScenePtr = std::shared_ptr<const RolloutScene>;
+
+  /// Everything that a scene depends on besides its sample and the configuration.
+  static std::vector<double> KeyOf(const TubeScene& scene, const Part& part, const Bin& bin,
+                                   std::uint64_t seed) {
+    std::vector<double> key = {static_cast<double>(seed >> 32),
+                               static_cast<double>(seed & 0xffffffffu),
+                               part.friction,
+                               part.bending_stiffness_Nm2,
+                               part.mass_kg,
+                               part.length_m,
+                               static_cast<double>(part.links),
+                               part.is_hose() ? 1.0 : 0.0};
+    for (const auto* range : {&part.friction_range, &part.bending_stiffness_range_Nm2}) {
+      key.insert(key.end(), range->begin(), range->end());
+      key.push_back(-1.0);
+    }
+    key.insert(key.end(), bin.size_m.begin(), bin.size_m.end());
+    for (const PerceivedTube& tube : scene.tubes) {
+      key.push_back(tube.radius_m);
+      for (const Vector3& p : tube.centerline_N) key.insert(key.end(), p.data(), p.data() + 3);
+    }
+    return key;
+  }
+
+  ScenePtr Find(const std::vector<double>& key, int sample) {
+    const std::lock_guard lock(mutex_);
+    if (key != key_) return nullptr;
+    const auto found = scenes_.find(sample);
+    return found == scenes_.end() ? nullptr : found->second;
+  }
+
+  void Keep(const std::vector<double>& key, int sample, const ScenePtr& scene) {
+    const std::lock_guard lock(mutex_);
+    if (key != key_) {
+      scenes_.clear();
+      key_ = key;
+    }
+    scenes_[sample] = scene;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<double> key_;
+  std::map<int, ScenePtr> scenes_;
+};
 
 // What each thread keeps between roll-outs.
 struct Worker {
@@ -101,12 +153,13 @@ CandidateScore Summarize(const CandidateMotion& candidate,
 class Evaluation {
  public:
   Evaluation(const TubeScene& scene, const Part& part, const Bin& bin,
-             const EvaluationRequest& request, const EvaluatorOptions& options)
+             const EvaluationRequest& request, const EvaluatorOptions& options, SceneCache& cache)
       : scene_(scene),
         part_(part),
         bin_(bin),
         request_(request),
         options_(options),
+        cache_(cache),
         samples_(request.samples) {}
 
   EvaluationResult Run() {
@@ -149,11 +202,16 @@ class Evaluation {
   }
 
   void BuildScenes() {
+    const std::vector<double> key = SceneCache::KeyOf(scene_, part_, bin_, request_.seed);
     scenes_.resize(samples_);
-    ParallelFor(samples_, options_.parallelism, [&](int sample, int) {
+    ParallelFor(samples_, options_.parallelism, [&](int k, int) {
+      const int sample = request_.first_sample + k;
+      scenes_[k] = cache_.Find(key, sample);
+      if (scenes_[k] != nullptr) return;
       const SampleDraw draw = DrawSample(part_, static_cast<int>(scene_.tubes.size()), sample,
                                          request_.seed, options_.config);
-      scenes_[sample].emplace(scene_, part_, bin_, draw, options_.config);
+      scenes_[k] = std::make_shared<const RolloutScene>(scene_, part_, bin_, draw, options_.config);
+      cache_.Keep(key, sample, scenes_[k]);
     });
   }
 
@@ -192,8 +250,9 @@ class Evaluation {
   const Bin& bin_;
   const EvaluationRequest& request_;
   const EvaluatorOptions& options_;
+  SceneCache& cache_;
   const int samples_;
-  std::vector<std::optional<RolloutScene>> scenes_;
+  std::vector<SceneCache::ScenePtr> scenes_;
   EvaluationResult result_;
 };
 
@@ -212,10 +271,11 @@ void EvaluatorConfig::Visit(ConfigVisitor& v) {
 
 EvaluateFunction MakeEvaluator(const EvaluatorOptions& options) {
   TT_CHECK(options.parallelism.threads >= 1);
-  return [options](const TubeScene& scene, const Part& part, const Bin& bin,
-                   const EvaluationRequest& request) {
+  return [options, cache = std::make_shared<SceneCache>()](const TubeScene& scene, const Part& part,
+                                                           const Bin& bin,
+                                                           const EvaluationRequest& request) {
     Validate(scene, request, options.config);
-    return Evaluation(scene, part, bin, request, options).Run();
+    return Evaluation(scene, part, bin, request, options, *cache).Run();
   };
 }
 

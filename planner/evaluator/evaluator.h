@@ -40,6 +40,7 @@ struct EvaluatorOptions {
 /// on a jam or when the lifted tube is a radius over all others and they are at rest. `full`: none
 /// of this shortening. sim_s and wall_s are sums over the samples' roll-outs.
 ///
+/// Settled scenes of the last pile are kept for the next question about it.
 /// The function may be called from several threads at once; results do not depend on the thread
 /// count nor on the order of candidates. Throws Error(kBadData) for a tube that is not in the
 /// scene, a motion without waypoints, longer than max_sim_s or not finite, a place outside the

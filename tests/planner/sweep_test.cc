@@ -47,6 +47,8 @@ TEST_CASE("A slide is stopped by what stands in its way only", "[unit]") {
   CHECK(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0.2, 0}})) == 2);
   CHECK_FALSE(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0.05, 0}})).has_value());
   CHECK_FALSE(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0, 0.1}, {0, 0.2, 0.1}})).has_value());
+  // What rests on a tube that slides is dragged; lifting the upper one first leaves the lower.
+  CHECK(FirstTouched(Cross(), Motion(1, {{0, 0, 0}, {-0.01, 0, 0}})) == 2);
   // Down again behind it is fine, down onto it is not.
   CHECK(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0, 0.1}, {0, 0.1, 0.1}, {0, 0.1, 0}})) == 2);
 }
