@@ -9,8 +9,9 @@ namespace tubetwin {
 namespace {
 
 constexpr double kStep_m = 0.005;
-constexpr double kChord_m = 0.001;  // Error of simplified lines, part of the margin.
-constexpr double kNearer_m = 3e-4;  // Coming nearer by less than this is arithmetic, not a push.
+constexpr double kChord_m = 0.001;    // Error of simplified lines, part of the margin.
+constexpr double kOverlap_m = 0.003;  // More than perception's error: one lies in the other.
+constexpr double kNearer_m = 3e-4;    // Coming nearer by less than this is arithmetic, not a push.
 
 double DistanceToLine(const Vector3& p, const Vector3& a, const Vector3& b) {
   const Vector3 d = b - a;
@@ -72,6 +73,7 @@ bool Touches(const Polyline& moving, const Polyline& other, double radii_m, cons
   const double bottom = Bottom(moving), top = Top(other);
   const double start = ClosestOfLines(moving, other).distance_m - radii_m;
   if (track.slides_first && start < margin_m) return true;
+  if (start < -kOverlap_m) return true;  // They will push each other apart.
   const double allowed = std::min(margin_m, start - kNearer_m);
   for (std::size_t k = 1; k < track.shifts.size(); ++k) {
     const Vector3& shift = track.shifts[k];

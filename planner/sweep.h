@@ -14,9 +14,9 @@ Polyline Simplify(const Polyline& line, double tolerance_m);
 /// The first tube, in the scene's order, that a motion would touch: whether its surface comes
 /// within `margin_m` of the moving one's, or nearer still when they are that near at the start. A
 /// tube that only supports a lifted one is left without being touched; one that lies against a tube
-/// that begins with a slide is dragged. The moving tube is rigid here; legs are looked at every 5
-/// mm. Nothing: the motion disturbs no perceived tube. Precondition: the motion's tube is in the
-/// scene.
+/// that begins with a slide is dragged, and one that overlaps by more than 3 mm is pushed. The
+/// moving tube is rigid here; legs are looked at every 5 mm. Nothing: the motion disturbs no
+/// perceived tube. Precondition: the motion's tube is in the scene.
 std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& motion,
                                 double margin_m = 0.003);
 

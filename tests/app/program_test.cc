@@ -70,6 +70,22 @@ TEST_CASE("A bad pile ends with 65, naming file and field", "[app]") {
   CHECK_FALSE(std::filesystem::exists(folder.path() + "/o/picks.jsonl"));
 }
 
+TEST_CASE("Tubes that cannot lie so are refused by evaluate or simulated apart, never pruned",
+          "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "wall.json", Replaced(kGoodPile, "[0.26, 0, 0.0125]", "[0.40, 0, 0.0125]"));
+  CheckRefused(folder, "evaluate wall.json --out s.json", 65, "inside the bin's wall");
+  Write(folder, "floor.json", Replaced(kGoodPile, "[0.26, 0, 0.0125]", "[0.26, 0, -0.05]"));
+  CheckRefused(folder, "evaluate floor.json --out s.json", 65, "inside the bin's floor");
+  CHECK_FALSE(std::filesystem::exists(folder.path() + "/s.json"));
+  Write(folder, "same.csv",
+        "tube,index,x,y,z\n0,0,-0.2,0,0.0125\n0,1,0.2,0,0.0125\n"
+        "1,0,-0.2,0,0.0125\n1,1,0.2,0,0.0125\n");
+  REQUIRE(RunProgram(folder, "evaluate same.csv --motions up --out s.json").code == 0);
+  const Json scores = Json::parse(ReadFile(folder.path() + "/s.json"));
+  for (const Json& candidate : scores["candidates"]) CHECK(candidate["status"] != "pruned");
+}
+
 TEST_CASE("An output that cannot be made ends with 73", "[app]") {
   const TemporaryFolder folder;
   Write(folder, "taken", "a file, no folder\n");

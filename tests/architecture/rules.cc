@@ -70,6 +70,7 @@ const std::vector<ThirdParty>& ThirdParties() {
        {"scenes/engine", "scenes", "planner/evaluator", "twin/render", "twin/cell", "twin/campaign",
         "twin/app", "tests"}},
       {"pcl/", {"perception", "tests"}, true},
+      {"ode/", {"tests"}, true},
       {"fcl/", {"models"}, true},
       {"assimp/", {"models"}, true},
       {"embree3/", {"twin/render"}, true},

@@ -40,6 +40,12 @@ TEST_CASE("Lifting the upper tube touches nothing, lifting the lower one meets i
   CHECK(FirstTouched(Cross(), Motion(1, up)) == 2);
 }
 
+TEST_CASE("Two tubes in the same place do not part untouched", "[unit]") {
+  const Polyline line = StraightLine({-0.2, 0, kRadius}, {0.2, 0, kRadius});
+  const TubeScene scene = PerfectScene({line, line}, kRadius);
+  CHECK(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0, 0.4}})) == 2);
+}
+
 TEST_CASE("A slide is stopped by what stands in its way only", "[unit]") {
   const TubeScene scene = PerfectScene({StraightLine({-0.2, 0, kRadius}, {0.2, 0, kRadius}),
                                         StraightLine({-0.2, 0.1, kRadius}, {0.2, 0.1, kRadius})},

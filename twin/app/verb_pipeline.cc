@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -169,11 +170,30 @@ EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
   return request;
 }
 
+/// Throws Error(kBadData) for a tube whose axis runs through the bin's floor or a wall.
+void RequireOutOfWalls(const Pile& pile, const std::string& file) {
+  const double t = Bin::kWallThickness_m;
+  for (const PileTube& tube : pile.tubes) {
+    for (const Vector3& p : Resample(tube.centerline_N, 0.005)) {
+      const double over_x = std::abs(p.x()) - pile.bin.half_x_m();
+      const double over_y = std::abs(p.y()) - pile.bin.half_y_m();
+      const bool above = over_x < 0.0 && over_y < 0.0;
+      const bool in_wall = over_x < t && over_y < t && p.z() < pile.bin.wall_m() && !above;
+      if (!in_wall && !(above && p.z() < 0.0)) continue;
+      throw Error(ErrorKind::kBadData, file + ": tube " + std::to_string(tube.id) +
+                                           ": its axis is inside the bin's " +
+                                           (in_wall ? "wall" : "floor") + " at (" + Number(p.x()) +
+                                           ", " + Number(p.y()) + ", " + Number(p.z()) + ") m");
+    }
+  }
+}
+
 int EvaluatePile(const EvaluateOptions& given, const Common& common) {
   PileOverrides overrides;
   if (!given.part.empty()) overrides.part = given.part;
   if (!given.bin.empty()) overrides.bin_size_m = ParseBinSize(given.bin);
   const Pile pile = LoadPile(given.pile, overrides);
+  RequireOutOfWalls(pile, given.pile);
   const Scenario scenario = LoadScenario({}, common);
   const TubeScene scene = SceneOfPile(pile);
   EvaluationRequest request = MakeRequest(scene, pile, given, scenario.planner);
