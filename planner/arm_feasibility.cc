@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "models/gripper_spec.h"
+#include "planner/tool_way.h"
 
 namespace tubetwin {
 namespace {
@@ -34,13 +35,12 @@ FeasibilityFunction ArmFeasibility(const MotionPlanner& motion, const CellLayout
       return "approach: " + refused->reason;
     }
 
-    std::vector<RigidTransform> X_BE_way;
-    for (std::size_t k = 1; k < candidate.waypoints_N.size(); ++k) {
-      X_BE_way.push_back(bin.X_BN * Translation(candidate.waypoints_N[k]) * X_NE);
-    }
+    std::vector<RigidTransform> X_BE_way = ToolWay(candidate, X_NE);
+    for (RigidTransform& pose : X_BE_way) pose = bin.X_BN * pose;
     if (X_BE_way.empty()) return std::nullopt;
     options.opening_m = 2.0 * radius_m;
     options.speed_m_s = candidate.speed_m_s;
+    options.turn_speed_rad_s = candidate.turn_speed_rad_s;
     const MotionResult away =
         motion.PlanPolyline(EndOf(std::get<CheckedTrajectory>(down)), X_BE_way, options);
     if (const auto* refused = std::get_if<MotionRejection>(&away)) {

@@ -15,7 +15,9 @@ namespace {
 constexpr double kEnough_m = 0.020;    // More room than this is worth nothing.
 constexpr double kOwnReach_m = 0.045;  // The tube itself is an obstacle from this arc length on.
 constexpr double kTangentWindow_m = 0.03;
-constexpr double kNearEnd_m = 0.012;  // Just more than half a pad.
+constexpr double kGripperReach_m = 0.20;  // Of the gripper's body from E.
+constexpr double kTurnStep_m = 0.01;      // Between poses of a motion that turns.
+constexpr double kNearEnd_m = 0.012;      // Just more than half a pad.
 // Room between tube and pad on either side, metres, from comfortable to what arm and camera need.
 constexpr std::array<double, 6> kSideRoom_m = {0.020, 0.015, 0.011, 0.008, 0.006, 0.0045};
 
@@ -140,6 +142,32 @@ RigidTransform GraspPose(const Vector3& p_NE, const Vector3& along, const Bin& b
   return MakeTransform(R_NG, p_NE);
 }
 
+// Least distance of the gripper to the bin's walls on a motion, at most kEnough_m.
+double WallClearanceAlong(const CandidateMotion& motion, const Grasp& grasp, double radius_m,
+                          const Bin& bin) {
+  std::vector<RigidTransform> poses;
+  if (motion.turns()) {
+    const double reach_m = (grasp.X_NG.translation() - motion.pivot_N).norm() + kGripperReach_m;
+    poses = PosesAlong(motion, kTurnStep_m, reach_m);
+  } else {
+    for (std::size_t k = 1; k < motion.waypoints_N.size(); ++k) {
+      // The lower end of each leg at its farther end: walls are met there or nowhere.
+      for (Vector3 shift : {motion.waypoints_N[k - 1], motion.waypoints_N[k]}) {
+        shift.z() = std::min(motion.waypoints_N[k - 1].z(), motion.waypoints_N[k].z());
+        poses.push_back(Translation(shift));
+      }
+    }
+  }
+  const GripperBoxes boxes = MakeGripperBoxes(grasp.opening_m, radius_m, 0.0);
+  double to_wall = kEnough_m;
+  for (const RigidTransform& pose : poses) {
+    for (const OrientedBox& box : {boxes.fingers, boxes.chassis, boxes.base}) {
+      to_wall = std::min(to_wall, WallClearance(Moved(pose * grasp.X_NG, box), bin, kEnough_m));
+    }
+  }
+  return to_wall;
+}
+
 struct SiteResult {
   std::optional<GraspSite> site;
   std::string reason;
@@ -240,18 +268,7 @@ GraspSet RankGrasps(const GraspSites& sites, const PerceivedTube& tube,
           {tube.id, motion.name, name, "the gripper would run into another tube on the way"});
       continue;
     }
-    const GripperBoxes boxes = MakeGripperBoxes(grasp.opening_m, tube.radius_m, 0.0);
-    double to_wall = kEnough_m;
-    for (std::size_t k = 1; k < motion.waypoints_N.size(); ++k) {
-      // The lower end of each leg at its farther end: walls are met there or nowhere.
-      for (Vector3 shift : {motion.waypoints_N[k - 1], motion.waypoints_N[k]}) {
-        shift.z() = std::min(motion.waypoints_N[k - 1].z(), motion.waypoints_N[k].z());
-        const RigidTransform X_NG = Translation(shift) * grasp.X_NG;
-        for (const OrientedBox& box : {boxes.fingers, boxes.chassis, boxes.base}) {
-          to_wall = std::min(to_wall, WallClearance(Moved(X_NG, box), bin, kEnough_m));
-        }
-      }
-    }
+    const double to_wall = WallClearanceAlong(motion, grasp, tube.radius_m, bin);
     if (to_wall < config.finger_clearance_m) {
       set.rejections.push_back(
           {tube.id, motion.name, name,

@@ -38,15 +38,16 @@ Detection DetectionFromJson(const JsonView& view) {
 }
 
 Json PlanJson(const PickPlan& plan) {
-  return Json{{"target", plan.target},
-              {"class", static_cast<int>(plan.target_class)},
-              {"motion", plan.motion.name},
-              {"waypoints_m", ToJson(plan.motion.waypoints_N)},
-              {"X_NG", MatrixJson(plan.grasp.X_NG)},
-              {"at_m", plan.grasp.at_m},
-              {"opening_m", plan.grasp.opening_m},
-              {"used_simulator", plan.used_simulator},
-              {"prediction", ToJson(plan.prediction)}};
+  Json json = {{"target", plan.target},
+               {"class", static_cast<int>(plan.target_class)},
+               {"motion", plan.motion.name},
+               {"X_NG", MatrixJson(plan.grasp.X_NG)},
+               {"at_m", plan.grasp.at_m},
+               {"opening_m", plan.grasp.opening_m},
+               {"used_simulator", plan.used_simulator},
+               {"prediction", ToJson(plan.prediction)}};
+  AddWay(plan.motion, json);
+  return json;
 }
 
 PickPlan PlanFromJson(const JsonView& view) {
@@ -55,7 +56,7 @@ PickPlan PlanFromJson(const JsonView& view) {
       static_cast<int>(view.Field("target").AsInteger());
   plan.target_class = static_cast<TubeClass>(view.Field("class").AsNumber(0, 2));
   plan.motion.name = view.Field("motion").AsString();
-  plan.motion.waypoints_N = view.Field("waypoints_m").AsPolyline();
+  static_cast<MotionWay&>(plan.motion) = WayFromJson(view);
   plan.grasp.X_NG = MatrixFromJson(view.Field("X_NG"));
   plan.grasp.at_m = view.Field("at_m").AsNumber();
   plan.grasp.opening_m = view.Field("opening_m").AsNumber();

@@ -13,13 +13,35 @@
 
 namespace tubetwin {
 
-/// What a tube does after it was grasped: relative translations from where it lies, frame N, the
-/// first zero. (Rotations come with a later strategy.)
-struct CandidateMotion {
+/// Where a tube goes from where it lies, frame N: at waypoint k every point p of it is at
+/// pivot + waypoint + rotation * (p - pivot). The first waypoint is zero and not turned.
+struct MotionWay {
+  std::vector<Vector3> waypoints_N;             ///< Of the pivot, metres.
+  std::vector<Eigen::Quaterniond> rotations_N;  ///< One for each waypoint, or none: not turned.
+  Vector3 pivot_N = Vector3::Zero();            ///< Without meaning where nothing turns.
+
+  bool turns() const { return !rotations_N.empty(); }
+};
+
+/// Takes points from where they lie to where they are at waypoint `k`. Precondition: k exists.
+RigidTransform PoseAt(const MotionWay& way, std::size_t k);
+
+/// Such poses along the way, the first and every waypoint among them. Between waypoints the pivot
+/// goes straight and the rotation evenly; points within `reach_m` of the pivot move by `step_m` at
+/// most from one pose to the next.
+std::vector<RigidTransform> PosesAlong(const MotionWay& way, double step_m, double reach_m);
+
+/// Writes `waypoints_m` and, where the way turns, `rotations_wxyz` and `pivot_m` into an object.
+void AddWay(const MotionWay& way, Json& json);
+/// Reads what AddWay wrote. Throws Error(kBadData).
+MotionWay WayFromJson(const JsonView& view);
+
+/// What a tube does after it was grasped.
+struct CandidateMotion : MotionWay {
   int tube = 0;
-  std::string name;                  ///< "up", "escape+", "escape-", ...
-  std::vector<Vector3> waypoints_N;  ///< Metres.
+  std::string name;  ///< "up", "escape+", "escape-", ...
   double speed_m_s = 0.25;
+  double turn_speed_rad_s = 0.5;
   /// Escape: arc length range of the tube that passes under the occluder; no grasp there.
   double forbidden_from_m = 1.0, forbidden_to_m = 0.0;  ///< Empty when from > to.
   /// More such ranges: the gripper would run into another tube there.
@@ -27,10 +49,9 @@ struct CandidateMotion {
 };
 
 /// One candidate's score (scores.json).
-struct CandidateScore {
+struct CandidateScore : MotionWay {
   int tube = 0;
   std::string motion;
-  std::vector<Vector3> waypoints_N;
   double displacement_m = 0.0;  ///< Sum over the other tubes' centres of mass, baseline subtracted.
   double extra_probability = 0.0;  ///< Share of samples in which another tube came along.
   double cost = 0.0;               ///< Lower is better.

@@ -101,11 +101,12 @@ WaitOutcome Mover::GuardedLine(const RigidTransform& X_BE, double speed_m_s, dou
   return outcome;
 }
 
-void Mover::Legs(const std::vector<Vector3>& p_BE, double speed_m_s, double acceleration_m_s2) {
-  if (p_BE.empty()) return;
-  std::vector<RigidTransform> poses;
-  for (const Vector3& p : p_BE) poses.push_back(MakeTransform(X_BE().linear(), p));
-  Run(planner_.PlanPolyline(Start(), poses, Options(speed_m_s, acceleration_m_s2)), "lift");
+void Mover::Legs(const std::vector<RigidTransform>& X_BE, double speed_m_s, double turn_speed_rad_s,
+                 double acceleration_m_s2) {
+  if (X_BE.empty()) return;
+  MotionOptions options = Options(speed_m_s, acceleration_m_s2);
+  options.turn_speed_rad_s = turn_speed_rad_s;
+  Run(planner_.PlanPolyline(Start(), X_BE, options), "lift");
 }
 
 bool Mover::TiltsFrom(const RigidTransform& X_BE, const std::vector<Vector3>& rotations_B) const {

@@ -41,8 +41,9 @@ class Mover {
             double finger_clearance_m = kFingerClearance_m);
   /// Straight line that ends at contact. What it felt is the outcome.
   WaitOutcome GuardedLine(const RigidTransform& X_BE, double speed_m_s, double force_limit_N);
-  /// Straight legs through points, orientation kept, stopping at corners.
-  void Legs(const std::vector<Vector3>& p_BE, double speed_m_s, double acceleration_m_s2);
+  /// Straight legs through poses, stopping at each.
+  void Legs(const std::vector<RigidTransform>& X_BE, double speed_m_s, double turn_speed_rad_s,
+            double acceleration_m_s2);
   /// About E, which stays where it is. Rotation vector in B, radians.
   void Tilt(const Vector3& rotation_B, double speed_rad_s);
 

@@ -8,6 +8,7 @@
 #include "planner/choose.h"
 #include "planner/cycle_context.h"
 #include "planner/points.h"
+#include "planner/tool_way.h"
 
 namespace tubetwin {
 namespace {
@@ -135,21 +136,25 @@ class Round {
 
   /// 3 cm lift, weigh, the rest of the motion, weigh for good.
   Detection LiftAndWeigh(const PickPlan& plan) {
-    const Vector3 p_BG = c_.mover.X_BE().translation();
+    const RigidTransform& X_BN = c_.cell.bin.X_BN;
+    const RigidTransform X_NE = X_BN.inverse() * c_.mover.X_BE();
     c_.cell.arm.SetPayload(c_.setup.part.mass_kg, c_.cell.layout.X_FE.translation());
-    std::vector<Vector3> first, rest;
-    SplitMotion(plan.motion, p_BG, first, rest);
-    const double acceleration = c_.setup.cycle.transfer_acceleration_m_s2;
+    const SplitWay way = SplitAt(ToolWay(plan.motion, X_NE), X_NE, c_.setup.cycle.first_lift_m);
+    const auto drive = [&](std::vector<RigidTransform> poses) {
+      for (RigidTransform& pose : poses) pose = X_BN * pose;
+      c_.mover.Legs(poses, plan.motion.speed_m_s, plan.motion.turn_speed_rad_s,
+                    c_.setup.cycle.transfer_acceleration_m_s2);
+    };
     {
       const CycleContext::Timed timed(c_, &AttemptReport::SimTime::move);
       c_.observer.OnStep("lifting 3 cm");
-      c_.mover.Legs(first, plan.motion.speed_m_s, acceleration);
+      drive(way.first);
     }
     c_.report.first_weighing = c_.Weigh(0.1);
     {
       const CycleContext::Timed timed(c_, &AttemptReport::SimTime::move);
       c_.observer.OnStep("lifting (" + plan.motion.name + ")");
-      c_.mover.Legs(rest, plan.motion.speed_m_s, acceleration);
+      drive(way.rest);
     }
     c_.observer.OnStep("weighing");
     const Detection detection = c_.Weigh(c_.setup.cycle.settle_s);
@@ -286,26 +291,6 @@ class Round {
 
   void Remember(const PickPlan& plan) {
     failed_.emplace_back(plan.motion.name, plan.grasp.X_NG.translation());
-  }
-
-  /// Positions of E along the motion, cut where the first 3 cm end.
-  void SplitMotion(const CandidateMotion& motion, const Vector3& p_BG, std::vector<Vector3>& first,
-                   std::vector<Vector3>& rest) const {
-    const Matrix3 R_BN = c_.cell.bin.X_BN.linear();
-    const double cut_m = c_.setup.cycle.first_lift_m;
-    double gone_m = 0.0;
-    for (std::size_t i = 1; i < motion.waypoints_N.size(); ++i) {
-      const Vector3 a = motion.waypoints_N[i - 1], b = motion.waypoints_N[i];
-      const double leg_m = (b - a).norm();
-      if (leg_m < 1e-9) continue;
-      if (gone_m < cut_m && gone_m + leg_m > cut_m) {
-        first.push_back(p_BG + R_BN * (a + (cut_m - gone_m) / leg_m * (b - a)));
-        rest.push_back(p_BG + R_BN * b);
-      } else {
-        (gone_m + leg_m <= cut_m ? first : rest).push_back(p_BG + R_BN * b);
-      }
-      gone_m += leg_m;
-    }
   }
 
   CycleContext c_;

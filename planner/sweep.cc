@@ -48,38 +48,40 @@ double Bottom(const Polyline& line) {
   return bottom;
 }
 
-// Places of the motion every kStep_m, the start first, and from which of them on it only rises.
+// Poses of the motion every kStep_m, the start first, and from which of them on it only rises.
 struct Track {
-  std::vector<Vector3> shifts;
+  std::vector<RigidTransform> poses;
   std::size_t rising_from = 0;
   bool slides_first = false;  // What lies against the tube is dragged at once.
 };
 
-Track TrackOf(const CandidateMotion& motion) {
-  Track track;
-  track.shifts.push_back(motion.waypoints_N.front());
-  for (std::size_t k = 1; k < motion.waypoints_N.size(); ++k) {
-    const Vector3 from = motion.waypoints_N[k - 1], leg = motion.waypoints_N[k] - from;
-    const int count = std::max(1, static_cast<int>(std::ceil(leg.norm() / kStep_m)));
-    for (int i = 1; i <= count; ++i) track.shifts.push_back(from + leg * i / count);
-    if (k == 1) track.slides_first = leg.head<2>().norm() > 1e-9;
-    if (leg.head<2>().norm() > 1e-9 || leg.z() < 0.0) track.rising_from = track.shifts.size() - 1;
+Track TrackOf(const CandidateMotion& motion, const Polyline& moving) {
+  double reach_m = 0.0;
+  for (const Vector3& p : moving) reach_m = std::max(reach_m, (p - motion.pivot_N).norm());
+  Track track{PosesAlong(motion, kStep_m, reach_m)};
+  for (std::size_t k = 1; k < track.poses.size(); ++k) {
+    const RigidTransform &before = track.poses[k - 1], &pose = track.poses[k];
+    const Vector3 way = pose.translation() - before.translation();
+    if (way.head<2>().norm() > 1e-9 || way.z() < 0.0 ||
+        !pose.linear().isApprox(before.linear(), 1e-9)) {
+      track.rising_from = k;
+      if (k == 1) track.slides_first = true;
+    }
   }
   return track;
 }
 
 bool Touches(const Polyline& moving, const Polyline& other, double radii_m, const Track& track,
              double margin_m) {
-  const double bottom = Bottom(moving), top = Top(other);
+  const double top = Top(other);
   const double start = ClosestOfLines(moving, other).distance_m - radii_m;
   if (track.slides_first && start < margin_m) return true;
   if (start < -kOverlap_m) return true;  // They will push each other apart.
   const double allowed = std::min(margin_m, start - kNearer_m);
-  for (std::size_t k = 1; k < track.shifts.size(); ++k) {
-    const Vector3& shift = track.shifts[k];
+  for (std::size_t k = 1; k < track.poses.size(); ++k) {
+    const Polyline moved = Transformed(track.poses[k], moving);
     // From here on it only rises, and it is over the other already.
-    if (k > track.rising_from && bottom + shift.z() > top + radii_m + margin_m) return false;
-    const Polyline moved = Transformed(Translation(shift), moving);
+    if (k > track.rising_from && Bottom(moved) > top + radii_m + margin_m) return false;
     if (ClosestOfLines(moved, other).distance_m - radii_m < allowed) return true;
   }
   return false;
@@ -108,7 +110,7 @@ std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& m
   }
   TT_CHECK(tube != nullptr);
   const Polyline moving = Simplify(tube->centerline_N, kChord_m);
-  const Track track = TrackOf(motion);
+  const Track track = TrackOf(motion, moving);
   for (const PerceivedTube& other : scene.tubes) {
     if (other.id == motion.tube) continue;
     if (Touches(moving, Simplify(other.centerline_N, kChord_m), tube->radius_m + other.radius_m,

@@ -17,6 +17,7 @@ namespace {
 
 using Status = CandidateScore::Status;
 
+constexpr double kMostTurn_deg = 80.0;
 constexpr double kExtraCost_m = 1.0, kJamCost_m = 1.0, kDivergedCost_m = 10.0;
 
 double WallSeconds() {
@@ -31,6 +32,24 @@ int IndexOf(const TubeScene& scene, int id) {
   }
   throw Error(ErrorKind::kBadData, "evaluator: tube " + std::to_string(id) +
                                        " is not in the scene, which has tubes " + Join(known));
+}
+
+// The hand's three hinges are sure to follow so far.
+void ValidateTurns(const CandidateMotion& candidate, const std::string& who) {
+  if (!candidate.turns()) return;
+  if (candidate.rotations_N.size() != candidate.waypoints_N.size()) {
+    throw Error(ErrorKind::kBadData, who + std::to_string(candidate.rotations_N.size()) +
+                                         " rotations for " +
+                                         std::to_string(candidate.waypoints_N.size()) +
+                                         " waypoints, one for each is needed");
+  }
+  for (const Eigen::Quaterniond& rotation : candidate.rotations_N) {
+    const double angle_deg = Degrees(rotation.angularDistance(Eigen::Quaterniond::Identity()));
+    if (!(angle_deg <= kMostTurn_deg)) {
+      throw Error(ErrorKind::kBadData, who + "turned by " + Number(angle_deg) +
+                                           " degrees, at most " + Number(kMostTurn_deg));
+    }
+  }
 }
 
 void Validate(const TubeScene& scene, const EvaluationRequest& request,
@@ -48,12 +67,15 @@ void Validate(const TubeScene& scene, const EvaluationRequest& request,
       throw Error(ErrorKind::kBadData,
                   who + "held at " + Number(at_m) + " m, allowed 0 to " + Number(length_m) + " m");
     }
-    double way_m = 0.0;
+    ValidateTurns(candidate, who);
+    double way_m = 0.0, turn_rad = 0.0;
     for (std::size_t i = 1; i < candidate.waypoints_N.size(); ++i) {
       way_m += (candidate.waypoints_N[i] - candidate.waypoints_N[i - 1]).norm();
+      if (!candidate.turns()) continue;
+      turn_rad += candidate.rotations_N[i - 1].angularDistance(candidate.rotations_N[i]);
     }
     if (candidate.waypoints_N.empty() || !std::isfinite(way_m) || !(candidate.speed_m_s > 0.0) ||
-        way_m / candidate.speed_m_s > config.max_sim_s) {
+        way_m / candidate.speed_m_s + turn_rad / candidate.turn_speed_rad_s > config.max_sim_s) {
       throw Error(ErrorKind::kBadData, who + "a way of " + Number(way_m) + " m at " +
                                            Number(candidate.speed_m_s) + " m/s, at most " +
                                            Number(config.max_sim_s) + " s are simulated");
@@ -124,7 +146,7 @@ CandidateScore Summarize(const CandidateMotion& candidate,
   CandidateScore score;
   score.tube = candidate.tube;
   score.motion = candidate.name;
-  score.waypoints_N = candidate.waypoints_N;
+  static_cast<MotionWay&>(score) = candidate;
   const double n = static_cast<double>(outcomes.size());
   int jammed = 0;
   bool diverged = false;
@@ -195,7 +217,7 @@ class Evaluation {
       CandidateScore& score = result_.candidates[k];
       score.tube = candidate.tube;
       score.motion = candidate.name;
-      score.waypoints_N = candidate.waypoints_N;
+      static_cast<MotionWay&>(score) = candidate;
       score.status = Status::kPruned;
     }
     return to_run;

@@ -62,23 +62,30 @@ void Measure(const RolloutScene& scene, int index, const mjModel& model, mjData&
 
 }  // namespace
 
-LegProfile::LegProfile(std::vector<Vector3> waypoints, double speed_m_s)
-    : waypoints_(std::move(waypoints)) {
-  TT_CHECK(!waypoints_.empty() && speed_m_s > 0.0);
+LegProfile::LegProfile(std::vector<Vector3> waypoints, double speed_m_s,
+                       std::vector<Eigen::Quaterniond> turns, double turn_speed_rad_s)
+    : waypoints_(std::move(waypoints)), turns_(std::move(turns)) {
+  TT_CHECK(!waypoints_.empty() && speed_m_s > 0.0 && turn_speed_rad_s > 0.0);
+  TT_CHECK(turns_.empty() || turns_.size() == waypoints_.size());
   double end_s = 0.0;
   for (std::size_t k = 1; k < waypoints_.size(); ++k) {
-    const double length_m = (waypoints_[k] - waypoints_[k - 1]).norm();
+    double length_m = (waypoints_[k] - waypoints_[k - 1]).norm();
+    if (!turns_.empty()) {
+      const double angle = turns_[k - 1].angularDistance(turns_[k]);
+      length_m = std::max(length_m, angle / turn_speed_rad_s * speed_m_s);
+    }
     const double speed = std::min(speed_m_s, length_m / kRamp_s);
     if (length_m > 0.0) end_s += length_m / speed + kRamp_s;
     end_s_.push_back(end_s);
+    length_m_.push_back(length_m);
     speed_m_s_.push_back(speed);
   }
 }
 
-Vector3 LegProfile::At(double time_s) const {
+LegProfile::Place LegProfile::PlaceAt(double time_s) const {
   std::size_t leg = 0;
   while (leg < end_s_.size() && time_s >= end_s_[leg]) ++leg;
-  if (leg == end_s_.size()) return waypoints_.back();
+  if (leg == end_s_.size()) return {leg, 0.0};
   const double begin_s = leg == 0 ? 0.0 : end_s_[leg - 1];
   const double duration_s = end_s_[leg] - begin_s, t = std::max(0.0, time_s - begin_s);
   // Distance after a time from rest: half-cosine ramp of the speed, then constant speed.
@@ -86,11 +93,23 @@ Vector3 LegProfile::At(double time_s) const {
     if (time >= kRamp_s) return speed_m_s_[leg] * (time - 0.5 * kRamp_s);
     return 0.5 * speed_m_s_[leg] * (time - kRamp_s / kPi * std::sin(kPi * time / kRamp_s));
   };
-  const Vector3 way = waypoints_[leg + 1] - waypoints_[leg];
-  const double length_m = way.norm();
   const double travelled =
-      t < 0.5 * duration_s ? from_rest(t) : length_m - from_rest(duration_s - t);
-  return waypoints_[leg] + way * (travelled / length_m);
+      t < 0.5 * duration_s ? from_rest(t) : length_m_[leg] - from_rest(duration_s - t);
+  return {leg, travelled / length_m_[leg]};
+}
+
+Vector3 LegProfile::At(double time_s) const {
+  const auto [leg, share] = PlaceAt(time_s);
+  if (leg == end_s_.size()) return waypoints_.back();
+  const Vector3 way = waypoints_[leg + 1] - waypoints_[leg];
+  return waypoints_[leg] + way * share;
+}
+
+Eigen::Quaterniond LegProfile::TurnAt(double time_s) const {
+  if (turns_.empty()) return Eigen::Quaterniond::Identity();
+  const auto [leg, share] = PlaceAt(time_s);
+  if (leg == end_s_.size()) return turns_.back();
+  return turns_[leg].slerp(share, turns_[leg + 1]);
 }
 
 RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
@@ -103,14 +122,19 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
   }
   GuardEngine([&] { mj_copyModel(&model, &scene.model()); });
   const Vector3 p_NStart = scene.Grip(index, grip_share, model, data);
-  const LegProfile profile(motion.waypoints_N, motion.speed_m_s);
+  std::vector<Vector3> p_NHand;
+  for (std::size_t k = 0; k < motion.waypoints_N.size(); ++k) {
+    p_NHand.push_back(PoseAt(motion, k) * p_NStart);
+  }
+  const LegProfile profile(std::move(p_NHand), motion.speed_m_s, motion.rotations_N,
+                           motion.turn_speed_rad_s);
   const double dt = model.opt.timestep;
   const int steps = static_cast<int>(std::ceil((profile.duration_s() + config.hold_s) / dt));
   double saturated_s = 0.0;
   int step = 0;
   while (step < steps) {
     ++step;
-    scene.Command(p_NStart + profile.At(step * dt), data);
+    scene.Command(profile.At(step * dt), profile.TurnAt(step * dt), data);
     if (Step(model, data) != StepStatus::kOk) {
       outcome.status = Status::kDiverged;
       break;

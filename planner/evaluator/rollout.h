@@ -7,17 +7,28 @@
 namespace tubetwin {
 
 /// Position along straight legs at a speed, standing still at every waypoint, each leg with
-/// half-cosine ramps of 0.15 s (slower when the leg is too short for them).
+/// half-cosine ramps of 0.15 s (slower when the leg is too short for them). With `turns`, one for
+/// each waypoint, the orientation turns evenly on the same share of each leg, which takes as long
+/// as the slower of both needs.
 class LegProfile {
  public:
-  LegProfile(std::vector<Vector3> waypoints, double speed_m_s);
+  LegProfile(std::vector<Vector3> waypoints, double speed_m_s,
+             std::vector<Eigen::Quaterniond> turns = {}, double turn_speed_rad_s = 0.5);
   double duration_s() const { return end_s_.empty() ? 0.0 : end_s_.back(); }
   Vector3 At(double time_s) const;
+  Eigen::Quaterniond TurnAt(double time_s) const;
 
  private:
+  struct Place {
+    std::size_t leg = 0;  ///< The number of legs: at the end.
+    double share = 0.0;   ///< Of this leg.
+  };
+  Place PlaceAt(double time_s) const;
+
   std::vector<Vector3> waypoints_;
-  std::vector<double> end_s_;  ///< Of each leg.
-  std::vector<double> speed_m_s_;
+  std::vector<Eigen::Quaterniond> turns_;
+  std::vector<double> end_s_;                 ///< Of each leg.
+  std::vector<double> length_m_, speed_m_s_;  ///< A turn counts as the way that takes as long.
 };
 
 struct RolloutOutcome {

@@ -14,8 +14,8 @@ namespace {
 constexpr double kChord_m = 0.001;  // Rigid tubes: error of the capsules' axes.
 // The hand: stiff against the tube, slow enough for the time step (reference: 0.4 rad per step).
 constexpr double kSlideStiffness_N_m = 2e4, kSlideArmature_kg = 1.5, kHandMass_kg = 0.2;
-constexpr double kYawStiffness_Nm = 1000.0, kYawDamping_Nms = 16.0, kYawArmature_kgm2 = 0.05;
-constexpr double kYawTorque_Nm = 5.0;
+constexpr double kTurnStiffness_Nm = 1000.0, kTurnDamping_Nms = 16.0, kTurnArmature_kgm2 = 0.05;
+constexpr double kTurnTorque_Nm = 5.0;
 // Settling: overlaps of what was perceived are let apart with most of the speed taken away.
 constexpr double kGentle_s = 0.24, kKeepSpeed = 0.7, kSettle_s = 1.5, kAtRest_m_s = 0.005;
 constexpr int kRestSteps = 10;
@@ -125,18 +125,19 @@ void RolloutScene::AddHand(mjSpec& spec, double force_N) {
   hand->explicitinertial = true;
   hand->mass = kHandMass_kg;
   for (double& inertia : hand->inertia) inertia = 1e-3;
-  const char* names[kHandAxes] = {"hand_x", "hand_y", "hand_z", "hand_yaw"};
+  const char* names[kHandAxes] = {"hand_x",     "hand_y",     "hand_z",
+                                  "hand_rot_x", "hand_rot_y", "hand_rot_z"};
   for (int axis = 0; axis < kHandAxes; ++axis) {
     mjsJoint* joint = mjs_addJoint(hand, nullptr);
     SetName(joint->element, names[axis]);
     const bool slide = axis < 3;
     joint->type = slide ? mjJNT_SLIDE : mjJNT_HINGE;
-    for (int k = 0; k < 3; ++k) joint->axis[k] = k == (slide ? axis : 2) ? 1.0 : 0.0;
-    joint->armature = slide ? kSlideArmature_kg : kYawArmature_kgm2;
+    for (int k = 0; k < 3; ++k) joint->axis[k] = k == axis % 3 ? 1.0 : 0.0;
+    joint->armature = slide ? kSlideArmature_kg : kTurnArmature_kgm2;
     const double critical =
         2.0 * std::sqrt(kSlideStiffness_N_m * (kSlideArmature_kg + kHandMass_kg));
-    SetServo(spec, names[axis], slide ? kSlideStiffness_N_m : kYawStiffness_Nm,
-             slide ? critical : kYawDamping_Nms, slide ? force_N : kYawTorque_Nm);
+    SetServo(spec, names[axis], slide ? kSlideStiffness_N_m : kTurnStiffness_Nm,
+             slide ? critical : kTurnDamping_Nms, slide ? force_N : kTurnTorque_Nm);
   }
   // One sleeping weld per link: every candidate is a switch, not another model.
   for (const TubeBody& tube : tubes_) {
@@ -161,7 +162,7 @@ void RolloutScene::BindHand() {
   hand_ = IdOf(*model_, mjOBJ_BODY, "hand");
   first_axis_qpos_ = model_->jnt_qposadr[IdOf(*model_, mjOBJ_JOINT, "hand_x")];
   first_actuator_ = IdOf(*model_, mjOBJ_ACTUATOR, "hand_x_servo");
-  TT_CHECK(IdOf(*model_, mjOBJ_ACTUATOR, "hand_yaw_servo") == first_actuator_ + 3);
+  TT_CHECK(IdOf(*model_, mjOBJ_ACTUATOR, "hand_rot_z_servo") == first_actuator_ + 5);
   int next = 0;
   for (const TubeBody& tube : tubes_) {
     TT_CHECK(IdOf(*model_, mjOBJ_EQUALITY, "grip_" + tube.body_names().front()) == next);
@@ -221,12 +222,19 @@ Vector3 RolloutScene::Grip(int index, double share, mjModel& model, mjData& data
   eq[10] = 1.0;
   data.eq_active[weld] = 1;
   for (int k = 0; k < 3; ++k) data.qpos[first_axis_qpos_ + k] = p_NHand[k];
-  Command(p_NHand, data);
+  Command(p_NHand, Eigen::Quaterniond::Identity(), data);
   return p_NHand;
 }
 
-void RolloutScene::Command(const Vector3& p_NHand, mjData& data) const {
+void RolloutScene::Command(const Vector3& p_NHand, const Eigen::Quaterniond& turn_N,
+                           mjData& data) const {
+  // The hinges follow each other: R = Rx Ry Rz.
+  const Matrix3 R = turn_N.toRotationMatrix();
+  const std::array<double, 3> angles = {std::atan2(-R(1, 2), R(2, 2)),
+                                        std::asin(std::clamp(R(0, 2), -1.0, 1.0)),
+                                        std::atan2(-R(0, 1), R(0, 0))};
   for (int k = 0; k < 3; ++k) data.ctrl[first_actuator_ + k] = p_NHand[k];
+  for (int k = 0; k < 3; ++k) data.ctrl[first_actuator_ + 3 + k] = angles[k];
 }
 
 double RolloutScene::Load(const mjModel& model, const mjData& data) const {

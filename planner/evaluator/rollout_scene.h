@@ -26,7 +26,7 @@ SampleDraw DrawSample(const Part& part, int tubes, int sample, std::uint64_t see
 /// construction, so threads may share it (each with its own model copy and data).
 class RolloutScene {
  public:
-  static constexpr int kHandAxes = 4;  ///< Slides x y z, then yaw.
+  static constexpr int kHandAxes = 6;  ///< Slides x y z, then hinges x y z.
 
   RolloutScene(const TubeScene& scene, const Part& part, const Bin& bin, const SampleDraw& draw,
                const EvaluatorConfig& config);
@@ -47,8 +47,8 @@ class RolloutScene {
   /// length; writes the weld into `model`, which is a copy of model(). Returns where the hand is.
   Vector3 Grip(int index, double share, mjModel& model, mjData& data) const;
 
-  /// Position targets of the hand's slides.
-  void Command(const Vector3& p_NHand, mjData& data) const;
+  /// Targets of the hand's slides and hinges. Precondition: turned by less than 90 degrees.
+  void Command(const Vector3& p_NHand, const Eigen::Quaterniond& turn_N, mjData& data) const;
   /// Largest of the hand's forces over its limit, 1 when saturated.
   double Load(const mjModel& model, const mjData& data) const;
 

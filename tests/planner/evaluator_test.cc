@@ -219,5 +219,45 @@ TEST_CASE("The hand keeps its speed, ramps and stops at every waypoint", "[unit]
   CHECK(jump < 0.25 / 0.15 * kPi / 2 * kStep * 1.05);  // Steepest point of a half-cosine ramp.
 }
 
+TEST_CASE("The hand turns what it holds as told, as far as its torque allows", "[physics]") {
+  const TubeScene scene =
+      PerfectScene({StraightLine({-0.25, 0, 0.0125}, {0.25, 0, 0.0125})}, kRadius);
+  const EvaluatorConfig config;
+  const Part part = LoadPart("pvc_a");
+  const RolloutScene world(scene, part, Bin{}, DrawSample(part, 1, 0, 1, config), config);
+  MjModel model(mj_copyModel(nullptr, &world.model()));
+  MjData data = MakeData(*model);
+  CandidateMotion motion = Motion(1, "turn", {{0, 0, 0}, {0, 0, 0.3}, {0, 0, 0.3}, {0, 0, 0.3}});
+  const Matrix3 first = RotY(Radians(30)), second = RotZ(Radians(60)) * RotX(Radians(20));
+  motion.rotations_N = {Eigen::Quaterniond::Identity(), Eigen::Quaterniond::Identity(),
+                        Eigen::Quaterniond(first), Eigen::Quaterniond(second)};
+  world.Grip(0, 0.3, *model, *data);
+  const Matrix3 before = BodyPose(*data, world.tubes()[0].bodies()[0]).linear();
+  const RolloutOutcome outcome = RollOut(world, 0, 0.3, motion, true, config, *model, *data);
+  CHECK(outcome.status == CandidateScore::Status::kDone);
+  const Matrix3 after = BodyPose(*data, world.tubes()[0].bodies()[0]).linear();
+  const double off_rad =
+      Eigen::AngleAxisd(Matrix3(after * before.transpose() * second.transpose())).angle();
+  CHECK(off_rad < 0.01);  // The tube's weight turns the hand by 0.2 mrad, the servo lags no more.
+
+  // Turned into the floor.
+  CandidateMotion into = Motion(1, "into", {{0, 0, 0}, {0, 0, 0}});
+  into.rotations_N = {Eigen::Quaterniond::Identity(), Eigen::Quaterniond(first)};
+  CHECK(RollOut(world, 0, 0.5, into, true, config, *model, *data).status ==
+        CandidateScore::Status::kJammed);
+}
+
+TEST_CASE("Legs that turn take as long as the slower of way and turn", "[unit]") {
+  const Eigen::Quaterniond none = Eigen::Quaterniond::Identity(), half(RotX(0.5));
+  const LegProfile turn({{0, 0, 0}, {0, 0, 0}}, 0.25, {none, half}, 0.5);
+  CHECK(turn.duration_s() == Approx(0.5 / 0.5 + 0.15));
+  CHECK(turn.TurnAt(0.5 * turn.duration_s()).angularDistance(none) == Approx(0.25));
+  CHECK(turn.TurnAt(99.0).angularDistance(half) == Approx(0.0).margin(1e-9));
+  const LegProfile both({{0, 0, 0}, {0, 0, 0.5}}, 0.25, {none, half}, 0.5);
+  CHECK(both.duration_s() == Approx(0.5 / 0.25 + 0.15));
+  CHECK(both.At(0.5 * both.duration_s()).z() == Approx(0.25));
+  CHECK(both.TurnAt(0.5 * both.duration_s()).angularDistance(none) == Approx(0.25));
+}
+
 }  // namespace
 }  // namespace tubetwin

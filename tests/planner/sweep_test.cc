@@ -59,5 +59,26 @@ TEST_CASE("A slide is stopped by what stands in its way only", "[unit]") {
   CHECK(FirstTouched(scene, Motion(1, {{0, 0, 0}, {0, 0, 0.1}, {0, 0.1, 0.1}, {0, 0.1, 0}})) == 2);
 }
 
+TEST_CASE("A tube that turns on the floor meets what its end sweeps over", "[unit]") {
+  const TubeScene scene =
+      PerfectScene({StraightLine({-0.2, 0, kRadius}, {0.2, 0, kRadius}),
+                    StraightLine({0.10, 0.06, kRadius}, {0.10, 0.26, kRadius}),
+                    StraightLine({-0.10, 0.06, kRadius}, {-0.10, 0.26, kRadius})},
+                   kRadius);
+  CandidateMotion motion = Motion(1, {Vector3::Zero(), Vector3::Zero(), {0, 0, 0.4}});
+  const auto turn = [](double angle_deg) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(Radians(angle_deg), Vector3::UnitZ()));
+  };
+  motion.rotations_N = {turn(0), turn(30), turn(30)};
+  CHECK(FirstTouched(scene, motion) == 2);
+  motion.rotations_N = {turn(0), turn(-30), turn(-30)};
+  CHECK(FirstTouched(scene, motion) == 3);
+  motion.rotations_N = {turn(0), turn(10), turn(10)};
+  CHECK_FALSE(FirstTouched(scene, motion).has_value());
+  motion.rotations_N = {turn(0), turn(30), turn(30)};
+  motion.pivot_N = Vector3(0.2, 0, 0);
+  CHECK(FirstTouched(scene, motion) == std::nullopt);
+}
+
 }  // namespace
 }  // namespace tubetwin

@@ -27,7 +27,9 @@ Json GraspJson(const PickPlan& plan) {
 }
 
 Json MotionJson(const PickPlan& plan) {
-  return Json{{"name", plan.motion.name}, {"waypoints_m", ToJson(plan.motion.waypoints_N)}};
+  Json json = {{"name", plan.motion.name}};
+  AddWay(plan.motion, json);
+  return json;
 }
 
 /// Angle between a tube and the tray's y axis, ends being equal, degrees.
