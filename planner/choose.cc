@@ -10,6 +10,7 @@
 #include "planner/covered_search.h"
 #include "planner/grasps.h"
 #include "planner/motions.h"
+#include "planner/removal_order.h"
 
 namespace tubetwin {
 namespace {
@@ -124,20 +125,18 @@ class Chooser {
     return options;
   }
 
-  // Covered tubes that can be grasped, those in doubt last, the least covered first.
+  // Covered tubes that can be grasped, those in doubt last, else in the order of removal.
   std::vector<Target> CoveredTargets() {
     std::vector<Target> targets = Targets(false);
-    std::stable_sort(targets.begin(), targets.end(), [this](const Target& a, const Target& b) {
+    std::map<int, int> place;
+    for (const RemovalRank& rank : RemovalOrder(scene_)) {
+      place.emplace(rank.tube, static_cast<int>(place.size()));
+    }
+    std::stable_sort(targets.begin(), targets.end(), [&](const Target& a, const Target& b) {
       if (a.doubt.empty() != b.doubt.empty()) return a.doubt.empty();
-      return Covers(a.tube->id) < Covers(b.tube->id);
+      return place.at(a.tube->id) < place.at(b.tube->id);
     });
     return targets;
-  }
-
-  int Covers(int id) const {
-    return static_cast<int>(
-        std::count_if(scene_.crossings.begin(), scene_.crossings.end(),
-                      [id](const Crossing& crossing) { return crossing.under == id; }));
   }
 
   // Scores motions of covered tubes until one promises to take its tube alone, tries the best, goes

@@ -5,6 +5,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "planner/more_motions.h"
+#include "planner/tilt_motions.h"
 
 namespace tubetwin {
 namespace {
@@ -105,6 +106,7 @@ void CoveredSearch::AddSeparations() {
     }
   }
   for (const Target* target : chosen) {
+    AddMotions(*target, MakeTilts(input_.scene, *target->tube, input_.bin, input_.config));
     AddMotions(*target, MakeSeparations(*target->tube, input_.bin, input_.config));
   }
 }

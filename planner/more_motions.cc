@@ -1,23 +1,23 @@
 #include "planner/more_motions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "hw_bridge/base/text.h"
-#include "planner/sweep.h"
+#include "planner/surround.h"
 #include "planner/wall_room.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr double kChord_m = 0.001;    // Error of simplified lines.
-constexpr double kSample_m = 0.010;   // Between points of the tube that slides.
 constexpr double kWayStep_m = 0.020;  // Between places on the way that are tried.
 constexpr int kDirections = 24;
+constexpr int kLegDirections = 12;  // Of either of two legs.
+constexpr std::array<double, 2> kFirstLegs_m = {0.06, 0.12};
 constexpr double kApart_deg = 60.0;    // Of the two best directions.
 constexpr double kTouchCost_m = 0.10;  // A newly touched tube costs as much as so long a way.
-constexpr double kGripper_m = 0.045;   // Fingers around a tube, from its axis, and the hand above.
-constexpr double kNearGrasp_m = 0.02;  // How it stands at the start is the grasp's own question.
 constexpr double kShakeLift_m = 0.10, kShake_m = 0.04;
 constexpr int kShakeStrokes = 3;
 constexpr double kSlow_m_s = 0.10;
@@ -25,76 +25,6 @@ constexpr double kHemisphere_m = 0.15;
 constexpr int kAzimuths = 8;
 constexpr double kHelixRadius_m = 0.05, kHelixRise_m = 0.25;
 constexpr int kHelixPoints = 8;  // In one turn.
-
-struct Other {
-  Polyline line;
-  double radius_m = 0.0;
-};
-
-/// The tube that moves and the others, as points and simplified lines.
-class Surround {
- public:
-  Surround(const TubeScene& scene, const PerceivedTube& tube)
-      : tube_(tube), points_(Resample(tube.centerline_N, kSample_m)) {
-    for (const PerceivedTube& other : scene.tubes) {
-      if (other.id == tube.id) continue;
-      others_.push_back({Simplify(other.centerline_N, kChord_m), other.radius_m});
-    }
-  }
-
-  /// Does any other tube lie over the moved one?
-  bool Covered(const Vector3& shift) const {
-    return std::any_of(others_.begin(), others_.end(), [&](const Other& other) {
-      const double reach = tube_.radius_m + other.radius_m;
-      return std::any_of(points_.begin(), points_.end(), [&](const Vector3& p) {
-        return Over(other.line, p + shift, reach, p.z() + 0.5 * reach);
-      });
-    });
-  }
-
-  /// Tubes that the moved one overlaps although it did not at the start.
-  int NewlyTouched(const Vector3& shift) const {
-    const Polyline moving = Transformed(Translation(shift), Simplify(tube_.centerline_N, kChord_m));
-    int count = 0;
-    for (const Other& other : others_) {
-      const double reach = tube_.radius_m + other.radius_m;
-      const double before = ClosestOfLines(tube_.centerline_N, other.line).distance_m;
-      const double now = ClosestOfLines(moving, other.line).distance_m;
-      if (now < reach - 0.003 && now < before - 0.003) ++count;
-    }
-    return count;
-  }
-
-  /// Would a gripper that holds the tube at p meet another tube on the way?
-  bool GripperMeets(const Vector3& p, const Vector3& way) const {
-    const double length = way.norm();
-    for (double gone = kNearGrasp_m; gone <= length; gone += 0.5 * kWayStep_m) {
-      const Vector3 at = p + gone / length * way;
-      for (const Other& other : others_) {
-        if (Over(other.line, at, kGripper_m, at.z() - 0.5 * tube_.radius_m)) return true;
-      }
-    }
-    return false;
-  }
-
- private:
-  /// Some point of the line lies within `reach` of p seen from above, higher than z.
-  static bool Over(const Polyline& line, const Vector3& p, double reach, double z) {
-    for (std::size_t k = 1; k < line.size(); ++k) {
-      const Eigen::Vector2d a = line[k - 1].head<2>(), d = line[k].head<2>() - a;
-      const double length2 = d.squaredNorm();
-      const Eigen::Vector2d q = p.head<2>();
-      const double t = length2 > 0.0 ? std::clamp(d.dot(q - a) / length2, 0.0, 1.0) : 0.0;
-      if ((q - a - t * d).norm() >= reach) continue;
-      if (line[k - 1].z() + t * (line[k].z() - line[k - 1].z()) > z) return true;
-    }
-    return false;
-  }
-
-  const PerceivedTube& tube_;
-  const Polyline points_;
-  std::vector<Other> others_;
-};
 
 CandidateMotion Named(const PerceivedTube& tube, const std::string& name,
                       const PlannerConfig& config) {
@@ -110,16 +40,6 @@ void GoUp(CandidateMotion& motion, double by_m) {
   motion.waypoints_N.push_back(motion.waypoints_N.back() + Vector3(0, 0, by_m));
 }
 
-/// Where the gripper may not hold: it would meet a tube on the straight way.
-void Block(const Surround& around, const PerceivedTube& tube, const Vector3& way,
-           const PlannerConfig& config, CandidateMotion& motion) {
-  const double length = Length(tube.centerline_N), half = 0.5 * config.grasp_step_m;
-  for (double s = 0.0; s <= length; s += config.grasp_step_m) {
-    if (!around.GripperMeets(PointAt(tube.centerline_N, s), way)) continue;
-    motion.blocked_m.emplace_back(s - half, s + half);
-  }
-}
-
 /// How far along a direction nothing covers the tube any more; the wall's room when it never ends.
 struct WayOut {
   Vector3 direction = Vector3::UnitX();
@@ -127,14 +47,16 @@ struct WayOut {
   bool clear = false;
 };
 
+/// From where the tube was shifted to.
 WayOut FindWayOut(const Surround& around, const PerceivedTube& tube, const Vector3& direction,
-                  const Bin& bin, const PlannerConfig& config) {
+                  const Bin& bin, const PlannerConfig& config,
+                  const Vector3& from = Vector3::Zero()) {
   WayOut out;
   out.direction = direction;
   const double room = AllowedSlide(tube, direction, bin, config.wall_safety_m);
   for (double way = kWayStep_m; way <= room; way += kWayStep_m) {
     out.way_m = way;
-    if (around.Covered(way * direction)) continue;
+    if (around.Covered(from + way * direction)) continue;
     out.clear = true;
     out.way_m = std::min(room, way + tube.radius_m);
     break;
@@ -142,7 +64,7 @@ WayOut FindWayOut(const Surround& around, const PerceivedTube& tube, const Vecto
   if (!out.clear) return out;
   int touched = 0;
   for (double way = kWayStep_m; way <= out.way_m; way += 2.0 * kWayStep_m) {
-    touched = std::max(touched, around.NewlyTouched(way * direction));
+    touched = std::max(touched, around.NewlyTouched(from + way * direction));
   }
   out.cost_m = out.way_m + kTouchCost_m * touched;
   return out;
@@ -160,8 +82,51 @@ void AddWayOut(const Surround& around, const PerceivedTube& tube, const WayOut& 
   const Vector3 slide = way.way_m * way.direction;
   motion.waypoints_N.push_back(slide);
   GoUp(motion, config.lift_m);
-  Block(around, tube, slide, config, motion);
+  motion.blocked_m = around.BlockedGrasps(slide, config.grasp_step_m);
   set.motions.push_back(std::move(motion));
+}
+
+Vector3 Direction(int k, int of) {
+  const double angle = 2.0 * kPi * k / of;
+  return {std::cos(angle), std::sin(angle), 0.0};
+}
+
+/// The cheapest way out of two legs that is cheaper than `best_cost_m`, or none.
+std::optional<CandidateMotion> FindTwoLegs(const Surround& around, const PerceivedTube& tube,
+                                           const Bin& bin, const PlannerConfig& config,
+                                           double best_cost_m) {
+  std::optional<CandidateMotion> best;
+  for (int a = 0; a < kLegDirections; ++a) {
+    const Vector3 first = Direction(a, kLegDirections);
+    const double room_m = AllowedSlide(tube, first, bin, config.wall_safety_m);
+    for (const double leg_m : kFirstLegs_m) {
+      if (leg_m > room_m) break;
+      const Vector3 corner = leg_m * first;
+      PerceivedTube there = tube;
+      there.centerline_N = Transformed(Translation(corner), tube.centerline_N);
+      const double corner_cost_m = leg_m + kTouchCost_m * around.NewlyTouched(corner);
+      if (corner_cost_m >= best_cost_m) continue;
+      for (int b = 0; b < kLegDirections; ++b) {
+        const Vector3 second = Direction(b, kLegDirections);
+        // Straight on was tried, and back is no way.
+        if (std::abs(second.dot(first)) > std::cos(Radians(25.0))) continue;
+        const WayOut way = FindWayOut(around, there, second, bin, config, corner);
+        if (!way.clear || corner_cost_m + way.cost_m >= best_cost_m) continue;
+        best_cost_m = corner_cost_m + way.cost_m;
+        best = Named(tube, "escape_corner", config);
+        best->waypoints_N.push_back(corner);
+        best->waypoints_N.push_back(corner + way.way_m * second);
+        GoUp(*best, config.lift_m);
+      }
+    }
+  }
+  if (!best) return best;
+  for (const int leg : {1, 2}) {
+    const Vector3 from = best->waypoints_N[leg - 1], way = best->waypoints_N[leg] - from;
+    const auto blocked = around.BlockedGrasps(way, config.grasp_step_m, from);
+    best->blocked_m.insert(best->blocked_m.end(), blocked.begin(), blocked.end());
+  }
+  return best;
 }
 
 /// A horizontal shift, shortened so that the whole tube keeps off the walls.
@@ -192,9 +157,7 @@ MotionSet MakeWaysOut(const TubeScene& scene, const PerceivedTube& tube, const B
   AddWayOut(around, tube, FindWayOut(around, tube, -chord, bin, config), "slide-", config, set);
   std::vector<WayOut> ways;
   for (int k = 0; k < kDirections; ++k) {
-    const double angle = 2.0 * kPi * k / kDirections;
-    const WayOut way =
-        FindWayOut(around, tube, Vector3(std::cos(angle), std::sin(angle), 0.0), bin, config);
+    const WayOut way = FindWayOut(around, tube, Direction(k, kDirections), bin, config);
     if (way.clear) ways.push_back(way);
   }
   std::stable_sort(ways.begin(), ways.end(),
@@ -209,6 +172,12 @@ MotionSet MakeWaysOut(const TubeScene& scene, const PerceivedTube& tube, const B
     if (way.direction.dot(ways.front().direction) > std::cos(Radians(kApart_deg)) + 1e-9) continue;
     AddWayOut(around, tube, way, "escape_away2", config, set);
     break;
+  }
+  const WayOut& best = ways.front();
+  if (best.cost_m > best.way_m) {
+    if (auto corner = FindTwoLegs(around, tube, bin, config, best.cost_m)) {
+      set.motions.push_back(*std::move(corner));
+    }
   }
   return set;
 }

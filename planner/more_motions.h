@@ -10,7 +10,9 @@ namespace tubetwin {
 ///
 /// "slide+", "slide-": along the tube's own end-to-end chord, in the sense of growing arc length
 /// and against it, as a drawer is pulled. "escape_away", "escape_away2": of 24 horizontal
-/// directions the two best (at least 60 degrees apart) by way and by tubes that are newly touched.
+/// directions the two best (at least 60 degrees apart) by way and by tubes that are newly touched;
+/// "escape_corner" where both would push others and two legs, 6 or 12 cm and then as far as needed,
+/// cost less.
 /// Each goes as far as it takes until no other tube covers the moved one, plus a radius; where the
 /// walls end the way before that (whole tube, `wall_safety_m`) it is a rejection. `blocked_m` are
 /// the places where the gripper would run into another tube on the way. Precondition: as

@@ -34,7 +34,8 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
           "larger probability",
           accept_extra, {0.0, 1.0});
   v.Field("separated",
-          "so many covered tubes get the long list of motions (shakes, hemisphere, helices) where "
+          "so many covered tubes get the long list of motions (tilts, shakes, hemisphere, helices) "
+          "where "
           "nothing else takes a tube alone",
           separated, {0, 100});
   v.Field("max_displacement_m", "displacement from which on all motions are equally bad",

@@ -110,5 +110,28 @@ TEST_CASE("Separations have the published shapes and keep off the walls", "[unit
   }
 }
 
+TEST_CASE("Round a corner goes what would push others on every straight way", "[unit]") {
+  // Tube 1 lies under tube 2 at one end, between walls of tubes with one gap.
+  const auto on_floor = [](double x0, double y0, double x1, double y1) {
+    return StraightLine({x0, y0, kRadius}, {x1, y1, kRadius});
+  };
+  const TubeScene scene = PerfectScene(
+      {on_floor(0, 0, 0.2, 0), StraightLine({0.15, -0.2, 3 * kRadius}, {0.15, 0.2, 3 * kRadius}),
+       on_floor(-0.05, -0.2, -0.05, 0.032), on_floor(0.26, -0.2, 0.26, 0.2),
+       on_floor(0, 0.10, 0.2, 0.10), on_floor(0, -0.06, 0.2, -0.06)},
+      kRadius);
+  const MotionSet set = MakeWaysOut(scene, scene.tubes[0], Bin{}, PlannerConfig{});
+  const CandidateMotion* corner = Find(set, "escape_corner");
+  REQUIRE(corner != nullptr);
+  REQUIRE(corner->waypoints_N.size() == 4);
+  CHECK(corner->waypoints_N[1].isApprox(Vector3(0, 0.06, 0), 1e-6));
+  const Vector3 second = corner->waypoints_N[2] - corner->waypoints_N[1];
+  CHECK(second.normalized().isApprox(-Vector3::UnitX(), 1e-6));
+  CHECK(-second.x() >= 0.05 + 2 * kRadius);
+  // Where a straight way pushes nobody there is no need.
+  CHECK(Find(MakeWaysOut(Cross(), Cross().tubes[0], Bin{}, PlannerConfig{}), "escape_corner") ==
+        nullptr);
+}
+
 }  // namespace
 }  // namespace tubetwin

@@ -13,6 +13,7 @@
 #include "planner/choose.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/more_motions.h"
+#include "planner/tilt_motions.h"
 #include "twin/app/common.h"
 #include "twin/render/scan_geometry.h"
 
@@ -151,7 +152,8 @@ EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
     found = true;
     std::vector<CandidateMotion> motions = MakeMotions(scene, tube, pile.bin, planner).motions;
     for (const MotionSet& set :
-         {MakeWaysOut(scene, tube, pile.bin, planner), MakeSeparations(tube, pile.bin, planner)}) {
+         {MakeWaysOut(scene, tube, pile.bin, planner), MakeTilts(scene, tube, pile.bin, planner),
+          MakeSeparations(tube, pile.bin, planner)}) {
       motions.insert(motions.end(), set.motions.begin(), set.motions.end());
     }
     for (CandidateMotion& motion : motions) {
