@@ -15,6 +15,7 @@
 namespace tubetwin {
 namespace {
 
+constexpr double kManyReleased = 3.0;
 constexpr double kApart_m = 0.020;  // Two tries nearer than this are one try.
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -181,8 +182,10 @@ class Chooser {
         option.plan.prediction = Prediction{score->displacement_m, score->extra_probability,
                                             static_cast<int>(score->samples.size())};
       }
+      const double released = std::min(1.0, ReleasedBy(scene_, tube.id) / kManyReleased);
       option.plan.cost =
           grasp.cost + config_.weight_confidence * (1.0 - tube.confidence) +
+          config_.weight_release * (1.0 - released) +
           (score != nullptr ? config_.weight_extra * ExtraProbability(*score, part_) : 0.0);
       option.plan.note =
           option.rank == Rank::kJams ? "the motion jammed in the simulator" : target.doubt;
@@ -247,6 +250,19 @@ class Chooser {
 };
 
 }  // namespace
+
+int ReleasedBy(const TubeScene& scene, int id) {
+  return static_cast<int>(
+      std::count_if(scene.tubes.begin(), scene.tubes.end(), [&](const PerceivedTube& tube) {
+        bool covered = false;
+        for (const Crossing& crossing : scene.crossings) {
+          if (crossing.under != tube.id) continue;
+          if (crossing.over != id) return false;
+          covered = true;
+        }
+        return covered;
+      }));
+}
 
 PlanResult PlanPicks(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
                      const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,

@@ -27,6 +27,8 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
   v.Field("weight_clearance", "weight of little room around the gripper", weight_clearance,
           {0.0, 10.0});
   v.Field("weight_confidence", "weight of doubt about the tube", weight_confidence, {0.0, 10.0});
+  v.Field("weight_release", "weight of setting fewer than three tubes free", weight_release,
+          {0.0, 10.0});
   v.Field("weight_extra", "weight of the probability that another tube comes along", weight_extra,
           {0.0, 10.0});
   v.Field("accept_extra",

@@ -31,6 +31,7 @@ struct PlannerConfig {
   double weight_height = 0.2, weight_centre = 0.5, weight_trajectory = 0.3;
   double weight_clearance = 0.1;   ///< Not in the paper: little room around the fingers costs.
   double weight_confidence = 0.2;  ///< Not in the paper: doubt about the tube costs.
+  double weight_release = 0.1;     ///< Not in the paper: setting fewer than three tubes free costs.
   double weight_extra = 3.0;       ///< Not in the paper: probability that another tube comes along.
   double max_displacement_m = 1.0;
   double min_length_share = 0.7;  ///< Tubes shorter than this share of the part come last.

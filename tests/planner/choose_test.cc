@@ -72,6 +72,27 @@ TEST_CASE("A free tube is picked upwards without asking the simulator", "[unit]"
   CHECK(result.plans[0].grasp.at_m == Approx(0.20));  // The centre of mass.
 }
 
+TEST_CASE("Of two free tubes the one that sets others free is picked first", "[unit]") {
+  FakeEvaluator evaluator;
+  TubeScene scene = Cross();
+  // Tube 3 lies alone.
+  scene.tubes.push_back(
+      PerfectScene({StraightLine({-0.25, -0.2, kRadius}, {-0.25, 0.2, kRadius})}, kRadius)
+          .tubes[0]);
+  scene.tubes.back().id = 3;
+  CHECK(ReleasedBy(scene, 2) == 1);
+  CHECK(ReleasedBy(scene, 1) == 0);
+  CHECK(ReleasedBy(scene, 3) == 0);
+  PlannerConfig config;
+  config.weight_height = config.weight_clearance = config.weight_centre = 0.0;
+  const PlanResult result = Plan(scene, config, evaluator);
+  REQUIRE_FALSE(result.plans.empty());
+  CHECK(result.plans.front().target == 2);
+  config.weight_release = 0.0;
+  const PlanResult without = Plan(scene, config, evaluator);
+  CHECK(result.plans.front().cost - without.plans.front().cost == Approx(0.1 * 2 / 3));
+}
+
 TEST_CASE("By occluded joints a strongly occluded tube is no candidate", "[unit]") {
   FakeEvaluator evaluator;
   TubeScene scene = Cross();

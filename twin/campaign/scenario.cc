@@ -141,6 +141,7 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
     planner.separated = 0;
     planner.max_candidates = 1000;  // All weakly occluded tubes are simulated before the choice.
     planner.weight_clearance = planner.weight_confidence = planner.weight_extra = 0.0;
+    planner.weight_release = 0.0;
     planner.min_length_share = planner.min_confidence = 0.0;
     scenario.resolution.strategy = "plus45";
   }
