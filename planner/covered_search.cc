@@ -70,7 +70,7 @@ bool CoveredSearch::Next() {
   do {
     ScoreMore();
     Refine();
-  } while (!Exhausted() && !AnyPromising());
+  } while (!Exhausted() && !AnyPromising() && rollouts_ < input_.config.max_rollouts);
   return true;
 }
 
@@ -146,6 +146,7 @@ void CoveredSearch::Refine() {
   for (;;) {
     std::vector<Scored*> order = InOrder();
     if (order.empty() || IsRefined(*order.front())) return;
+    if (rollouts_ >= input_.config.max_rollouts) return;
     order.resize(std::min<std::size_t>(order.size(), input_.config.refined));
     std::erase_if(order, [this](const Scored* scored) { return IsRefined(*scored); });
     // Those with as many samples as the best: one question for all.
@@ -213,6 +214,7 @@ void CoveredSearch::AddSamples(const std::vector<Scored*>& motions, int samples)
     scored.score =
         scored.samples == 0 ? answer.candidates[k] : Merged(scored.score, answer.candidates[k]);
     scored.samples += samples;
+    if (scored.score.status != CandidateScore::Status::kPruned) rollouts_ += samples;
   }
 }
 

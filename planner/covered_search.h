@@ -54,8 +54,8 @@ class CoveredSearch {
  public:
   CoveredSearch(const SearchInput& input, const std::vector<Target>& targets, PlanResult& result);
 
-  /// Goes on until a motion promises to take its tube alone (`accept_extra`) or nothing is left to
-  /// score; false when nothing was left before.
+  /// Goes on until a motion promises to take its tube alone (`accept_extra`), nothing is left to
+  /// score or `max_rollouts` were made; false when nothing was left before.
   bool Next();
   const std::vector<Scored>& scored() const { return scored_; }
   /// Moves the scores into the result.
@@ -80,6 +80,7 @@ class CoveredSearch {
   PlanResult& result_;
   std::size_t next_ = 0;
   bool separated_ = false;
+  int rollouts_ = 0;
   std::vector<Scored> scored_;
 };
 
