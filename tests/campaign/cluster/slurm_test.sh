@@ -64,7 +64,7 @@ slurmd -D -N "$host" 2>/dev/null &
 daemons+=($!)
 for _ in $(seq 100); do [[ $(sinfo -h -o %t 2>/dev/null) == idle ]] && break; sleep 0.2; done
 [[ $(sinfo -h -o %t 2>/dev/null) == idle ]] ||
-  { tail -5 "$work/slurmctld.log" "$work/slurmd.log" >&2; Skip "a Slurm of one node does not start here"; }
+  { tail -n 5 "$work/slurmctld.log" "$work/slurmd.log" >&2; Skip "a Slurm of one node does not start here"; }
 
 SmallCampaign
 cd "$work"
