@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hw_bridge/base/error.h"
+#include "models/gripper_spec.h"
 
 namespace tubetwin {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr double kStep_m = 0.005;
 constexpr double kChord_m = 0.001;    // Error of simplified lines, part of the margin.
 constexpr double kOverlap_m = 0.003;  // More than perception's error: one lies in the other.
+constexpr double kFingers_m = 0.09;   // Length of the fingers over what they hold.
 constexpr double kNearer_m = 3e-4;    // Coming nearer by less than this is arithmetic, not a push.
 
 double DistanceToLine(const Vector3& p, const Vector3& a, const Vector3& b) {
@@ -87,6 +89,26 @@ bool Touches(const Polyline& moving, const Polyline& other, double radii_m, cons
   return false;
 }
 
+const PerceivedTube& MovedTube(const TubeScene& scene, const CandidateMotion& motion) {
+  const auto found = std::find_if(scene.tubes.begin(), scene.tubes.end(),
+                                  [&](const PerceivedTube& t) { return t.id == motion.tube; });
+  TT_CHECK(found != scene.tubes.end());
+  return *found;
+}
+
+std::optional<int> FirstOther(const TubeScene& scene, const CandidateMotion& motion,
+                              const Polyline& moving, double radius_m, const Track& track,
+                              double margin_m) {
+  for (const PerceivedTube& other : scene.tubes) {
+    if (other.id == motion.tube) continue;
+    if (Touches(moving, Simplify(other.centerline_N, kChord_m), radius_m + other.radius_m, track,
+                margin_m)) {
+      return other.id;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Polyline Simplify(const Polyline& line, double tolerance_m) {
@@ -104,21 +126,21 @@ Polyline Simplify(const Polyline& line, double tolerance_m) {
 std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& motion,
                                 double margin_m) {
   TT_CHECK(!motion.waypoints_N.empty());
-  const PerceivedTube* tube = nullptr;
-  for (const PerceivedTube& candidate : scene.tubes) {
-    if (candidate.id == motion.tube) tube = &candidate;
-  }
-  TT_CHECK(tube != nullptr);
-  const Polyline moving = Simplify(tube->centerline_N, kChord_m);
-  const Track track = TrackOf(motion, moving);
-  for (const PerceivedTube& other : scene.tubes) {
-    if (other.id == motion.tube) continue;
-    if (Touches(moving, Simplify(other.centerline_N, kChord_m), tube->radius_m + other.radius_m,
-                track, margin_m)) {
-      return other.id;
-    }
-  }
-  return std::nullopt;
+  const PerceivedTube& tube = MovedTube(scene, motion);
+  const Polyline moving = Simplify(tube.centerline_N, kChord_m);
+  return FirstOther(scene, motion, moving, tube.radius_m, TrackOf(motion, moving), margin_m);
+}
+
+std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const CandidateMotion& motion,
+                                         const Vector3& p_N, double margin_m) {
+  TT_CHECK(!motion.waypoints_N.empty());
+  const GripperSpec gripper;
+  const double radius_m = std::hypot(
+      0.5 * gripper.pad_width_m, MovedTube(scene, motion).radius_m + gripper.finger_thickness_m);
+  const Polyline fingers = {p_N, p_N + Vector3(0, 0, kFingers_m)};
+  const Track track = TrackOf(motion, fingers);
+  if (track.rising_from == 0) return std::nullopt;
+  return FirstOther(scene, motion, fingers, radius_m, track, margin_m);
 }
 
 }  // namespace tubetwin

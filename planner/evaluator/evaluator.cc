@@ -205,12 +205,18 @@ class Evaluation {
   }
 
  private:
+  bool TouchesAny(const CandidateMotion& motion, double at_m) const {
+    const Polyline& line = scene_.tubes[IndexOf(scene_, motion.tube)].centerline_N;
+    return FirstTouched(scene_, motion) ||
+           FirstTouchedByFingers(scene_, motion, PointAt(line, at_m));
+  }
+
   // Scores the motions that touch nothing; returns the others.
   std::vector<int> Prune() {
     std::vector<int> to_run;
     for (std::size_t k = 0; k < request_.candidates.size(); ++k) {
       const CandidateMotion& candidate = request_.candidates[k];
-      if (request_.full || FirstTouched(scene_, candidate)) {
+      if (request_.full || TouchesAny(candidate, request_.grasp_at_m[k])) {
         to_run.push_back(static_cast<int>(k));
         continue;
       }

@@ -27,8 +27,9 @@ struct EvaluatorOptions {
 /// force-limited hand instead of prescribed positions): 4 ms, discrete integrator, elliptic cone,
 /// impratio 10. Rigid parts are capsule chains, hoses two-hinge chains that rest in the perceived
 /// shape. The scene settles once per sample, loses its speed and is kept; every roll-out starts
-/// from there. A hand on three force-limited slides and a yaw servo is welded to the link that is
-/// gripped and follows the waypoints at the motion's speed, with ramps of 0.15 s.
+/// from there. A hand on three force-limited slides and three hinges is welded to the link that is
+/// gripped and follows the waypoints at the motion's speed, with ramps of 0.15 s. It has the closed
+/// fingers and the gripper's body, vertical and across the tube, which push other tubes.
 ///
 /// A sample's displacement is the sum over the other tubes' centres of mass, each less what it
 /// creeps without any motion. The first sample is nominal; later ones draw friction, stiffness and
@@ -36,9 +37,11 @@ struct EvaluatorOptions {
 /// the share of samples in which another tube ends over the rim (3 cm higher than before at least),
 /// cost = displacement + 1 m * extra_probability (samples = 1: displacement alone, as in the paper)
 /// + 1 m when jammed, + 10 m when diverged. Status: diverged when any sample did, jammed when half
-/// of them or more did, pruned when the swept volume touches no other tube. A roll-out ends early
-/// on a jam or when the lifted tube is a radius over all others and they are at rest. `full`: none
-/// of this shortening. sim_s and wall_s are sums over the samples' roll-outs.
+/// of them or more did, pruned when the swept volumes of tube and fingers touch no other tube. A
+/// roll-out ends early on a jam or when all others are at rest and the lifted tube is a radius over
+/// them or only rises from there on with none of them over it. Tubes that lie still sleep until
+/// they are touched. `full`: none of the pruning and shortening. sim_s and wall_s are sums over the
+/// samples' roll-outs.
 ///
 /// Settled scenes of the last pile are kept for the next question about it.
 /// The function may be called from several threads at once; results do not depend on the thread

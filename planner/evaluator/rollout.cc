@@ -17,6 +17,8 @@ constexpr double kSaturated = 0.99;       // Of the hand's force limit.
 constexpr double kRaised_m = 0.03;        // A tube that was over the rim before did not come along.
 constexpr double kOthersRest_m_s = 0.02;  // What they still do then is below 1 mm.
 constexpr int kLookEvery = 10;            // Steps between looks for an early end.
+constexpr double kBeads_m = 0.01;         // Between points of an axis that are compared.
+constexpr double kLevel_m = 0.005;        // A tube that is lower by this is passed already.
 
 struct HeightRange {
   double low = std::numeric_limits<double>::infinity();
@@ -35,14 +37,52 @@ HeightRange Heights(const mjModel& model, const mjData& data, const TubeBody& tu
   return range;
 }
 
-// The lifted tube is a radius over all others and these are at rest.
-bool NothingLeftToTouch(const RolloutScene& scene, int index, const mjModel& model,
+// Points along a tube's axis, at most kBeads_m apart.
+std::vector<Vector3> Beads(const mjModel& model, const mjData& data, const TubeBody& tube) {
+  std::vector<Vector3> beads;
+  for (const int geom : tube.geoms()) {
+    const mjtNum* p = data.geom_xpos + 3 * geom;
+    const mjtNum* R = data.geom_xmat + 9 * geom;
+    const Vector3 centre(p[0], p[1], p[2]), axis(R[2], R[5], R[8]);
+    const double half_m = model.geom_size[3 * geom + 1];
+    const int steps = std::max(1, static_cast<int>(std::ceil(2.0 * half_m / kBeads_m)));
+    for (int k = 0; k <= steps; ++k) {
+      beads.push_back(centre + (2.0 * k / steps - 1.0) * half_m * axis);
+    }
+  }
+  return beads;
+}
+
+// Whether some point of `other` is in the way of a tube that goes straight up.
+bool IsOver(const std::vector<Vector3>& other, const std::vector<Vector3>& rising, double reach_m) {
+  for (const Vector3& o : other) {
+    for (const Vector3& p : rising) {
+      if (o.z() > p.z() - kLevel_m && (o - p).head<2>().squaredNorm() < reach_m * reach_m) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// All others are at rest and the lifted tube is a radius over them, or, where it only rises from
+// here on, none of them is within a radius of its way.
+bool NothingLeftToTouch(const RolloutScene& scene, int index, bool only_rises, const mjModel& model,
                         const mjData& data) {
-  const double low = Heights(model, data, scene.tubes()[index]).low;
-  for (int i = 0; i < static_cast<int>(scene.tubes().size()); ++i) {
+  const int count = static_cast<int>(scene.tubes().size());
+  for (int i = 0; i < count; ++i) {
     if (i == index) continue;
-    if (Heights(model, data, scene.tubes()[i]).high + scene.radius_m(i) > low) return false;
     if (!(scene.tubes()[i].MaxSpeed(model, data) < kOthersRest_m_s)) return false;
+  }
+  const double low = Heights(model, data, scene.tubes()[index]).low;
+  std::vector<Vector3> rising;
+  for (int i = 0; i < count; ++i) {
+    if (i == index) continue;
+    if (Heights(model, data, scene.tubes()[i]).high + scene.radius_m(i) <= low) continue;
+    if (!only_rises) return false;
+    if (rising.empty()) rising = Beads(model, data, scene.tubes()[index]);
+    const double reach_m = scene.radius_m(index) + 2.0 * scene.radius_m(i);
+    if (IsOver(Beads(model, data, scene.tubes()[i]), rising, reach_m)) return false;
   }
   return true;
 }
@@ -112,6 +152,17 @@ Eigen::Quaterniond LegProfile::TurnAt(double time_s) const {
   return turns_[leg].slerp(share, turns_[leg + 1]);
 }
 
+double LegProfile::RisingFrom() const {
+  std::size_t leg = end_s_.size();
+  const auto rises = [this](std::size_t k) {
+    const Vector3 way = waypoints_[k + 1] - waypoints_[k];
+    return way.head<2>().norm() < 1e-9 && way.z() >= 0.0 &&
+           (turns_.empty() || turns_[k].isApprox(turns_[k + 1], 1e-9));
+  };
+  while (leg > 0 && rises(leg - 1)) --leg;
+  return leg == 0 ? 0.0 : end_s_[leg - 1];
+}
+
 RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
                        const CandidateMotion& motion, bool full, const EvaluatorConfig& config,
                        mjModel& model, mjData& data) {
@@ -121,20 +172,20 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
     return outcome;
   }
   GuardEngine([&] { mj_copyModel(&model, &scene.model()); });
-  const Vector3 p_NStart = scene.Grip(index, grip_share, model, data);
+  const RigidTransform X_NStart = scene.Grip(index, grip_share, model, data);
   std::vector<Vector3> p_NHand;
   for (std::size_t k = 0; k < motion.waypoints_N.size(); ++k) {
-    p_NHand.push_back(PoseAt(motion, k) * p_NStart);
+    p_NHand.push_back(PoseAt(motion, k) * X_NStart.translation());
   }
   const LegProfile profile(std::move(p_NHand), motion.speed_m_s, motion.rotations_N,
                            motion.turn_speed_rad_s);
-  const double dt = model.opt.timestep;
+  const double dt = model.opt.timestep, rising_from_s = profile.RisingFrom();
   const int steps = static_cast<int>(std::ceil((profile.duration_s() + config.hold_s) / dt));
   double saturated_s = 0.0;
   int step = 0;
   while (step < steps) {
     ++step;
-    scene.Command(profile.At(step * dt), profile.TurnAt(step * dt), data);
+    scene.Command(profile.At(step * dt), profile.TurnAt(step * dt) * X_NStart.linear(), data);
     if (Step(model, data) != StepStatus::kOk) {
       outcome.status = Status::kDiverged;
       break;
@@ -143,7 +194,8 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
     if (saturated_s > config.jam_s) outcome.status = Status::kJammed;
     if (full) continue;
     if (outcome.status == Status::kJammed) break;
-    if (step % kLookEvery == 0 && NothingLeftToTouch(scene, index, model, data)) break;
+    if (step % kLookEvery != 0) continue;
+    if (NothingLeftToTouch(scene, index, step * dt >= rising_from_s, model, data)) break;
   }
   outcome.sim_s = step * dt;
   if (outcome.status != Status::kDiverged) Measure(scene, index, model, data, outcome);

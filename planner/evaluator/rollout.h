@@ -17,6 +17,8 @@ class LegProfile {
   double duration_s() const { return end_s_.empty() ? 0.0 : end_s_.back(); }
   Vector3 At(double time_s) const;
   Eigen::Quaterniond TurnAt(double time_s) const;
+  /// From when on it only goes straight up; duration_s() when it never does.
+  double RisingFrom() const;
 
  private:
   struct Place {

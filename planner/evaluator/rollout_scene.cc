@@ -5,8 +5,11 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/random.h"
+#include "models/gripper_spec.h"
+#include "planner/gripper_boxes.h"
 #include "planner/sweep.h"
 #include "scenes/bin_body.h"
+#include "scenes/engine/engine_error.h"
 
 namespace tubetwin {
 namespace {
@@ -21,6 +24,12 @@ constexpr double kGentle_s = 0.24, kKeepSpeed = 0.7, kSettle_s = 1.5, kAtRest_m_
 constexpr int kRestSteps = 10;
 constexpr double kCreepWindow_s = 0.4;
 constexpr double kTableBelow_m = 0.10;  // Under the bin's floor.
+// Slower than this times the step for ten steps: asleep. What turns back accelerates by more.
+constexpr double kAsleep_m_s2 = 2.5;
+constexpr double kParked_m = 5.0;  // The hand's height before it grips.
+// What the hand may touch: all tubes but the one that it holds. Walls are checked with the motion.
+constexpr int kHandBit = 2;
+constexpr double kHandFriction = 0.3;
 
 PileTube TubeToBuild(const PerceivedTube& tube, const Part& part, const Vector3& shift) {
   PileTube build;
@@ -112,10 +121,14 @@ RolloutScene::RolloutScene(const std::vector<PileTube>& tubes, const Part& part,
     tubes_.emplace_back(*spec, "tube" + std::to_string(i), tubes[i], options);
   }
   AddHand(*spec, config.hand_force_N);
+  AddFingers(*mjs_findBody(spec.get(), "hand"), part.radius_m, contact_s);
   model_ = Compile(*spec, "evaluator");
   for (TubeBody& tube : tubes_) tube.Bind(*model_);
   BindHand();
   Settle();
+  // Tubes that lie still apart from the lifted one are left out until something touches them.
+  model_->opt.enableflags |= mjENBL_SLEEP;
+  model_->opt.sleep_tolerance = kAsleep_m_s2 * config.timestep_s;
 }
 
 void RolloutScene::AddHand(mjSpec& spec, double force_N) {
@@ -158,6 +171,28 @@ void RolloutScene::AddHand(mjSpec& spec, double force_N) {
   }
 }
 
+// The gripper as it comes down vertically, closed on a tube that lies on the floor.
+void RolloutScene::AddFingers(mjsBody& hand, double radius_m, double contact_s) {
+  const double height_m = GraspHeightOverAxis(radius_m);
+  const GripperBoxes boxes = MakeGripperBoxes(2.0 * radius_m, radius_m, height_m);
+  const RigidTransform X_HandE =
+      Translation(0, 0, height_m) * Eigen::AngleAxisd(kPi, Vector3::UnitX());
+  for (const OrientedBox& box_E : {boxes.finger[0], boxes.finger[1], boxes.chassis, boxes.base}) {
+    const OrientedBox box = Moved(X_HandE, box_E);
+    mjsGeom* geom = mjs_addGeom(&hand, nullptr);
+    geom->type = mjGEOM_BOX;
+    const std::array<double, 4> turn = QuaternionWxyz(box.X_AB.linear());
+    std::copy(turn.begin(), turn.end(), geom->quat);
+    for (int k = 0; k < 3; ++k) geom->pos[k] = box.X_AB.translation()[k];
+    for (int k = 0; k < 3; ++k) geom->size[k] = box.half_m[k];
+    geom->mass = 0.0;
+    geom->friction[0] = kHandFriction;
+    geom->solref[0] = contact_s;
+    geom->contype = kHandBit;
+    geom->conaffinity = 0;
+  }
+}
+
 void RolloutScene::BindHand() {
   hand_ = IdOf(*model_, mjOBJ_BODY, "hand");
   first_axis_qpos_ = model_->jnt_qposadr[IdOf(*model_, mjOBJ_JOINT, "hand_x")];
@@ -168,11 +203,17 @@ void RolloutScene::BindHand() {
     TT_CHECK(IdOf(*model_, mjOBJ_EQUALITY, "grip_" + tube.body_names().front()) == next);
     weld_offset_.push_back(next);
     next += static_cast<int>(tube.body_names().size());
+    for (const int geom : tube.geoms()) {
+      model_->geom_conaffinity[geom] |= kHandBit;
+      model_->body_conaffinity[model_->geom_bodyid[geom]] |= kHandBit;
+    }
   }
 }
 
 void RolloutScene::Settle() {
   MjData data = MakeData(*model_);
+  data->qpos[first_axis_qpos_ + 2] = kParked_m;
+  Command(Vector3(0, 0, kParked_m), Matrix3::Identity(), *data);
   const double dt = model_->opt.timestep;
   const int gentle = static_cast<int>(kGentle_s / dt), limit = static_cast<int>(kSettle_s / dt);
   int at_rest = 0;
@@ -206,30 +247,42 @@ void RolloutScene::MeasureCreep(mjData& data) {
   }
 }
 
-Vector3 RolloutScene::Grip(int index, double share, mjModel& model, mjData& data) const {
+RigidTransform RolloutScene::Grip(int index, double share, mjModel& model, mjData& data) const {
+  GuardEngine([&] { mj_resetData(&model, &data); });  // Awake, whatever ran before.
   settled_.Restore(model, data);
   const TubeBody& tube = tubes_[index];
-  const TubeBody::Attachment at = tube.AttachmentAt(share * Length(tube.initial().centerline_N));
+  const double length_m = Length(tube.initial().centerline_N);
+  const TubeBody::Attachment at = tube.AttachmentAt(share * length_m);
   const RigidTransform X_NLink = BodyPose(data, tube.bodies()[at.link]);
-  const Vector3 p_NHand = X_NLink * at.p_Body;
+  const Polyline line = tube.Centerline_N(data);
+  const Vector3 tangent = TangentAt(line, share * Length(line), GripperSpec{}.pad_width_m);
+  RigidTransform X_NHand = Translation(X_NLink * at.p_Body);
+  // Of the two equal yaws the smaller, so that motions may turn it either way.
+  double yaw = std::atan2(tangent.y(), tangent.x());
+  if (yaw > 0.5 * kPi) yaw -= kPi;
+  if (yaw <= -0.5 * kPi) yaw += kPi;
+  X_NHand.rotate(Eigen::AngleAxisd(yaw, Vector3::UnitZ()));
+
   const int weld = weld_offset_[index] + at.link;
   mjtNum* eq = model.eq_data + mjNEQDATA * weld;
   // Anchor in the link, the same point in the hand (its origin), turn of the link in the hand.
-  const std::array<double, 4> turn = QuaternionWxyz(X_NLink.linear());
+  const std::array<double, 4> turn =
+      QuaternionWxyz(X_NHand.linear().transpose() * X_NLink.linear());
   for (int k = 0; k < 3; ++k) eq[k] = at.p_Body[k];
   for (int k = 0; k < 3; ++k) eq[3 + k] = 0.0;
   for (int k = 0; k < 4; ++k) eq[6 + k] = turn[k];
   eq[10] = 1.0;
   data.eq_active[weld] = 1;
-  for (int k = 0; k < 3; ++k) data.qpos[first_axis_qpos_ + k] = p_NHand[k];
-  Command(p_NHand, Eigen::Quaterniond::Identity(), data);
-  return p_NHand;
+  for (const int geom : tube.geoms()) model.geom_conaffinity[geom] &= ~kHandBit;
+  for (int k = 0; k < 3; ++k) data.qpos[first_axis_qpos_ + k] = X_NHand.translation()[k];
+  data.qpos[first_axis_qpos_ + 5] = yaw;
+  Command(X_NHand.translation(), X_NHand.linear(), data);
+  return X_NHand;
 }
 
-void RolloutScene::Command(const Vector3& p_NHand, const Eigen::Quaterniond& turn_N,
-                           mjData& data) const {
+void RolloutScene::Command(const Vector3& p_NHand, const Matrix3& R_NHand, mjData& data) const {
   // The hinges follow each other: R = Rx Ry Rz.
-  const Matrix3 R = turn_N.toRotationMatrix();
+  const Matrix3& R = R_NHand;
   const std::array<double, 3> angles = {std::atan2(-R(1, 2), R(2, 2)),
                                         std::asin(std::clamp(R(0, 2), -1.0, 1.0)),
                                         std::atan2(-R(0, 1), R(0, 0))};

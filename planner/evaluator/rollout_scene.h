@@ -44,16 +44,18 @@ class RolloutScene {
   double radius_m(int tube) const { return tubes_[tube].initial().radius_m; }
 
   /// Restores the settled state in `data` and welds the hand to tube `index` at a share of its arc
-  /// length; writes the weld into `model`, which is a copy of model(). Returns where the hand is.
-  Vector3 Grip(int index, double share, mjModel& model, mjData& data) const;
+  /// length, fingers closed on both sides of it; writes weld and contacts into `model`, which is a
+  /// copy of model(). Returns where the hand is: origin on the tube's axis, z up, y closing.
+  RigidTransform Grip(int index, double share, mjModel& model, mjData& data) const;
 
-  /// Targets of the hand's slides and hinges. Precondition: turned by less than 90 degrees.
-  void Command(const Vector3& p_NHand, const Eigen::Quaterniond& turn_N, mjData& data) const;
+  /// Targets of the hand's slides and hinges. Precondition: its z is less than 90 degrees off up.
+  void Command(const Vector3& p_NHand, const Matrix3& R_NHand, mjData& data) const;
   /// Largest of the hand's forces over its limit, 1 when saturated.
   double Load(const mjModel& model, const mjData& data) const;
 
  private:
   void AddHand(mjSpec& spec, double force_N);
+  void AddFingers(mjsBody& hand, double radius_m, double contact_s);
   void BindHand();
   void Settle();
   void MeasureCreep(mjData& data);

@@ -70,6 +70,14 @@ TEST_CASE("A free tube is lifted at no cost and needs no roll-out", "[physics]")
   CHECK(full.candidates[0].sim_s > 1.6);   // 0.4 m at 0.25 m/s, never cut short.
 }
 
+TEST_CASE("A leg profile knows from when on it only rises") {
+  CHECK(LegProfile(kUp, 0.25).RisingFrom() == 0.0);
+  const LegProfile aside({{0, 0, 0}, {0, 0.1, 0}, {0, 0.1, 0.2}, {0, 0.1, 0.4}}, 0.25);
+  CHECK(aside.RisingFrom() == Approx(0.1 / 0.25 + 0.15));
+  const LegProfile down({{0, 0, 0}, {0, 0, 0.1}, {0, 0, 0}}, 0.25);
+  CHECK(down.RisingFrom() == down.duration_s());
+}
+
 TEST_CASE("Lifting a covered tube takes the other along", "[physics]") {
   // Tube 2 lies balanced across tube 1.
   const TubeScene scene =
@@ -121,6 +129,38 @@ TEST_CASE("A tube that is driven into a wall jams instead of going through", "[p
   const EvaluationResult cut = Evaluate(pressed, request);
   CHECK(cut.candidates[0].status == CandidateScore::Status::kJammed);
   CHECK(cut.candidates[0].sim_s < 1.2);  // The whole motion would take 1.75 s.
+}
+
+TEST_CASE("The fingers push a tube that the held one would not touch", "[physics]") {
+  // Its surface comes 5 mm short of the other tube, the fingers reach 8 mm into it.
+  const TubeScene scene = PerfectScene({StraightLine({-0.2, 0, kRadius}, {0.2, 0, kRadius}),
+                                        StraightLine({-0.2, 0.06, kRadius}, {0.2, 0.06, kRadius})},
+                                       kRadius);
+  EvaluationRequest request = Request({Motion(1, "aside", {{0, 0, 0}, {0, 0.03, 0}})}, scene);
+  const EvaluationResult result = Evaluate(scene, request);
+  REQUIRE(result.candidates[0].status == CandidateScore::Status::kDone);
+  CHECK(result.candidates[0].displacement_m > 0.006);
+  // Straight up they leave as they came.
+  request.candidates[0].waypoints_N = kUp;
+  CHECK(Evaluate(scene, request).candidates[0].status == CandidateScore::Status::kPruned);
+}
+
+TEST_CASE("A roll-out ends once nothing lies over a tube that only rises", "[physics]") {
+  // Tube 1 leaves the one that it lies against, then goes up. Another stands high beside it.
+  const TubeScene scene = PerfectScene(
+      {StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
+       StraightLine({0.1, 0.027, kRadius}, {0.25, 0.027, kRadius}),
+       {{-0.1, 0.24, kRadius}, {-0.3, 0.24, kRadius}, {-0.3, 0.1, kRadius}, {-0.3, 0.1, 0.2}}},
+      kRadius);
+  EvaluationRequest request =
+      Request({Motion(1, "out", {{0, 0, 0}, {0, -0.1, 0}, {0, -0.1, 0.4}})}, scene);
+  const CandidateScore cut = Evaluate(scene, request).candidates[0];
+  REQUIRE(cut.status == CandidateScore::Status::kDone);
+  CHECK(cut.sim_s < 1.2);  // Over the standing one only after 1.5 s.
+  request.full = true;
+  const CandidateScore full = Evaluate(scene, request).candidates[0];
+  CHECK(full.sim_s > 2.4);
+  CHECK(cut.displacement_m == Approx(full.displacement_m).margin(0.005));
 }
 
 // Everything but the wall times.

@@ -80,5 +80,17 @@ TEST_CASE("A tube that turns on the floor meets what its end sweeps over", "[uni
   CHECK(FirstTouched(scene, motion) == std::nullopt);
 }
 
+TEST_CASE("Fingers touch what lies beside the tube that they hold unless they only rise") {
+  const TubeScene scene = PerfectScene({StraightLine({-0.2, 0, 0.0125}, {0.2, 0, 0.0125}),
+                                        StraightLine({-0.2, 0.06, 0.0125}, {0.2, 0.06, 0.0125})},
+                                       0.0125);
+  const Vector3 held(0, 0, 0.0125);
+  const CandidateMotion aside = Motion(1, {{0, 0, 0}, {0, 0.03, 0}});
+  CHECK_FALSE(FirstTouched(scene, aside).has_value());
+  CHECK(FirstTouchedByFingers(scene, aside, held) == 2);
+  CHECK_FALSE(FirstTouchedByFingers(scene, Motion(1, {{0, 0, 0}, {0, -0.03, 0}}), held));
+  CHECK_FALSE(FirstTouchedByFingers(scene, Motion(1, {{0, 0, 0}, {0, 0, 0.4}}), held));
+}
+
 }  // namespace
 }  // namespace tubetwin
