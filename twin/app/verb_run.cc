@@ -66,7 +66,7 @@ bool Holds(const Requirement& wanted, const Json& summary) {
 struct RunOptions {
   std::string scenario, pile, part, bin, cell, profile;
   std::vector<std::string> require;
-  bool video = false, force = false;
+  bool video = false, record = false, force = false;
 };
 
 Scenario RunScenario(const RunOptions& run, const Common& common, std::string& folder) {
@@ -93,6 +93,7 @@ int Run(const RunOptions& run, const Common& common) {
   options.out_folder = common.out;
   options.parallelism = common.parallelism();
   options.video = run.video;
+  options.record_cell = run.record;
   options.force = run.force;
   options.program_version = TUBETWIN_VERSION;
   ProgressLine progress(!common.quiet);
@@ -141,6 +142,8 @@ void AddRunVerb(CLI::App& app, Common& common) {
   verb->add_option("--profile", run->profile, "Pipeline profile")
       ->check(CLI::IsMember(PipelineProfiles()));
   verb->add_flag("--video", run->video, "Also draw video.mp4 and picture.png");
+  verb->add_flag("--record", run->record,
+                 "Also record what crosses the cell's border (cell.rec.zst), for `replay`");
   verb->add_option("--require", run->require,
                    "Exit with 1 unless 'KEY>=VALUE' of summary.json holds")
       ->allow_extra_args(false);

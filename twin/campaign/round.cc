@@ -8,8 +8,10 @@
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
 #include "hw_bridge/base/json.h"
+#include "hw_bridge/cell/cell_recorder.h"
 #include "twin/campaign/failure_picture.h"
 #include "twin/campaign/held_round.h"
+#include "twin/campaign/replay_round.h"
 #include "twin/campaign/report_round.h"
 #include "twin/campaign/result_files.h"
 #include "twin/campaign/scoring.h"
@@ -40,6 +42,7 @@ class RoundRecorder : public CycleObserver {
 
   void OnStep(const std::string& caption) override {
     recording_.captions.push_back(caption);
+    if (tape != nullptr) tape->Caption(caption);
     if (options_.progress) {
       options_.progress("attempt " + std::to_string(rows.size() + 1) + ": " + caption);
     }
@@ -70,6 +73,7 @@ class RoundRecorder : public CycleObserver {
 
   void OnAttemptEnd(const AttemptReport& report) override {
     rows.push_back(scorer_.AttemptRow(report, 0));
+    if (tape != nullptr) tape->Result(BelievedAttempt(report));
     const double now = WallNow();
     timings.push_back(RoundScorer::TimingRow(report, 0, now - attempt_began_));
     attempt_began_ = now;
@@ -91,6 +95,7 @@ class RoundRecorder : public CycleObserver {
   void Resume(const JsonView& scorer) { scorer_.Restore(scorer); }
 
   std::vector<Json> rows, timings;
+  CellRecorder* tape = nullptr;  ///< Of the cell; null: it is not recorded.
   /// Told of the moment when several hang, with the scorer's state.
   std::function<void(const HeldState&, const Json&)> on_several;
 
@@ -127,21 +132,6 @@ class RoundRecorder : public CycleObserver {
   double attempt_began_ = 0.0;
 };
 
-PickCycleSetup CycleSetup(const Scenario& scenario, const Part& part, const RoundOptions& options) {
-  PickCycleSetup setup;
-  setup.part = part;
-  setup.perception = scenario.perception;
-  setup.planner = scenario.planner;
-  setup.scan = scenario.scan;
-  setup.resolution = scenario.resolution;
-  setup.cycle = scenario.cycle;
-  setup.seed = static_cast<std::uint64_t>(scenario.seed);
-  setup.evaluate = MakeEvaluator({options.parallelism, scenario.evaluator});
-  setup.parallelism = options.parallelism;
-  setup.stop_requested = options.stop_requested;
-  return setup;
-}
-
 Pile StartPile(const Scenario& scenario, const Pile& asked, const RoundPhysics& physics) {
   if (asked.settled && scenario.pile.file.empty()) return asked;
   const SettleResult settled = SettlePile(asked, physics);
@@ -152,13 +142,11 @@ Pile StartPile(const Scenario& scenario, const Pile& asked, const RoundPhysics& 
   return settled.pile;  // Escaped tubes are part of the truth: they will not be placed.
 }
 
-/// The attempt of a stored round, from where it was stored to its end.
-RoundReport GoOn(const HeldRound& held, TwinCell& twin, const PickCycleSetup& setup,
-                 RoundRecorder& recorder) {
+/// The cell and the scorer of a stored round, as they were where it was stored.
+void Resume(const HeldRound& held, TwinCell& twin, RoundRecorder& recorder) {
   const JsonView view = JsonView(held.document, held.file).Field("held");
   twin.Restore(view.Field("cell"));
   recorder.Resume(view.Field("scorer"));
-  return FinishHeldAttempt(twin.cell(), setup, HeldStateFromJson(view.Field("cycle")), recorder);
 }
 
 /// Recording, film and report.
@@ -231,9 +219,21 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
     SaveHeldRound(pile, scenario.seed, twin.State(), state, scorer,
                   (out / kHeldRoundFile).string());
   };
-  const PickCycleSetup setup = CycleSetup(scenario, asked.part, options);
-  const RoundReport report =
-      held ? GoOn(*held, twin, setup, recorder) : RunPickCycle(twin.cell(), setup, recorder);
+  PickCycleSetup setup = ScenarioCycle(scenario, asked.part, options.parallelism);
+  setup.stop_requested = options.stop_requested;
+  if (held) Resume(*held, twin, recorder);
+  fs::remove(out / kCellRecordingFile);
+  std::optional<CellRecorder> cell_recorder;
+  if (options.record_cell) {
+    cell_recorder.emplace(twin.cell(),
+                          CellHeader(scenario, resolved, options.program_version, asked.part, held),
+                          (out / kCellRecordingFile).string());
+    recorder.tape = &*cell_recorder;
+  }
+  Cell& cell = cell_recorder ? cell_recorder->cell() : twin.cell();
+  const RoundReport report = held ? FinishHeldAttempt(cell, setup, HeldCycle(*held), recorder)
+                                  : RunPickCycle(cell, setup, recorder);
+  if (cell_recorder) EndRecording(*cell_recorder, report);
 
   RoundResult result;
   result.interrupted = report.end == RoundEnd::kInterrupted;

@@ -23,6 +23,8 @@ struct RoundOptions {
   Parallelism parallelism = Parallelism::All();
   RoundKeep keep = RoundKeep::kAll;
   bool video = false;  ///< With kAll only.
+  /// Also record what crosses the cell's border (kCellRecordingFile), for ReplayRound().
+  bool record_cell = false;
   bool force = false;  ///< Replace rows of another configuration.
   std::string program_version;
   std::function<void(const std::string&)>
@@ -39,6 +41,9 @@ struct RoundResult {
 
 /// The stored moment that a round with cycle.end_at_several ends at; pile.file takes it.
 inline constexpr const char* kHeldRoundFile = "held.pile.json";
+
+/// What crossed the cell's border in a round, in its folder; recording.bin is what it looked like.
+inline constexpr const char* kCellRecordingFile = "cell.rec.zst";
 
 /// Folder of a failed attempt below failures/; `row` counts rows of picks.jsonl from 0.
 std::string FailureFolderName(int row);

@@ -122,6 +122,20 @@ ScanSettings ScenarioScan(const Scenario& scenario, const RoundPhysics& physics)
   return settings;
 }
 
+PickCycleSetup ScenarioCycle(const Scenario& scenario, const Part& part, Parallelism parallelism) {
+  PickCycleSetup setup;
+  setup.part = part;
+  setup.perception = scenario.perception;
+  setup.planner = scenario.planner;
+  setup.scan = scenario.scan;
+  setup.resolution = scenario.resolution;
+  setup.cycle = scenario.cycle;
+  setup.seed = static_cast<std::uint64_t>(scenario.seed);
+  setup.evaluate = MakeEvaluator({parallelism, scenario.evaluator});
+  setup.parallelism = parallelism;
+  return setup;
+}
+
 const std::vector<std::string>& PipelineProfiles() {
   static const std::vector<std::string> names = {"best", "leao2020"};
   return names;

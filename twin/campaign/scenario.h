@@ -74,6 +74,9 @@ RoundPhysics ScenarioPhysics(const Scenario& scenario, const Part& part);
 /// How the scenario's scanner sees, without labels, for a round with that physics.
 ScanSettings ScenarioScan(const Scenario& scenario, const RoundPhysics& physics);
 
+/// The pick cycle of the scenario for a part; nothing in it depends on the cell.
+PickCycleSetup ScenarioCycle(const Scenario& scenario, const Part& part, Parallelism parallelism);
+
 /// Names of the pipeline's profiles.
 const std::vector<std::string>& PipelineProfiles();
 
