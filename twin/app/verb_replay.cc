@@ -1,9 +1,11 @@
 #include <cstdio>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/json.h"
+#include "hw_bridge/cell/mcap_export.h"
 #include "twin/app/common.h"
 #include "twin/campaign/replay_round.h"
 
@@ -13,7 +15,20 @@ namespace {
 struct ReplayVerb {
   std::string file;
   bool verify = false;
+  std::string mcap;
+  std::optional<double> from_s, to_s;
+  int cloud_step = 2;
 };
+
+/// The recording for public readers: messages of each topic.
+Json Export(const ReplayVerb& given) {
+  McapOptions options;
+  if (given.from_s) options.from = FromSeconds(*given.from_s);
+  if (given.to_s) options.to = FromSeconds(*given.to_s);
+  options.cloud_step = given.cloud_step;
+  CellRecording recording(given.file);
+  return ExportMcap(recording, given.mcap, options);
+}
 
 Json ResultJson(const ReplayResult& result) {
   const ReplayTally& tally = result.tally;
@@ -55,6 +70,17 @@ void Print(const ReplayResult& result) {
 }
 
 int Replay(const ReplayVerb& given, const Common& common) {
+  Json exported = nullptr;
+  if (!given.mcap.empty()) {
+    exported = Export(given);
+    if (!common.json) std::printf("%s: %s\n", given.mcap.c_str(), exported.dump().c_str());
+    if (!given.verify) {
+      if (common.json) std::printf("%s\n", Json{{"mcap", exported}}.dump(2).c_str());
+      return 0;
+    }
+  } else if (given.from_s || given.to_s) {
+    throw Error(ErrorKind::kUsage, "--from and --to choose what --mcap exports; it is not given");
+  }
   ReplayOptions options;
   options.parallelism = common.parallelism();
   ProgressLine progress(!common.quiet && !common.verbose);
@@ -68,7 +94,9 @@ int Replay(const ReplayVerb& given, const Common& common) {
   const ReplayResult result = ReplayRound(given.file, options);
   progress.Clear();
   if (common.json) {
-    std::printf("%s\n", ResultJson(result).dump(2).c_str());
+    Json json = ResultJson(result);
+    if (!exported.is_null()) json["mcap"] = exported;
+    std::printf("%s\n", json.dump(2).c_str());
   } else {
     Print(result);
   }
@@ -86,6 +114,14 @@ void AddReplayVerb(CLI::App& app, Common& common) {
       "does otherwise.");
   verb->add_option("recording", given->file, "cell.rec.zst of a result folder")->required();
   verb->add_flag("--verify", given->verify, "Exit with 1 when something differs");
+  verb->add_option("--mcap", given->mcap,
+                   "Export for public readers and viewers, in place of replaying unless --verify")
+      ->type_name("FILE.mcap");
+  verb->add_option("--from", given->from_s, "Export from this second of the cell's time on");
+  verb->add_option("--to", given->to_s, "Export up to this second");
+  verb->add_option("--cloud-step", given->cloud_step,
+                   "Export every N-th row and column of clouds; 1: every point")
+      ->check(CLI::Range(1, 100));
   AddCommonOptions(*verb, common, "", false);
   verb->callback(
       [given, &common] { common.action = [given, &common] { return Replay(*given, common); }; });
