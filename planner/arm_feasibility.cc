@@ -8,6 +8,8 @@
 namespace tubetwin {
 namespace {
 
+constexpr double kUpright = 0.9999;           // Of the tool's axis along the vertical.
+constexpr double kLeanFrom_m = 0.08;          // The cycle's default: there a tool leans over.
 constexpr double kFingerClearance_m = 0.001;  // The pads end 2 mm over the floor.
 
 }  // namespace
@@ -22,15 +24,17 @@ FeasibilityFunction ArmFeasibility(const MotionPlanner& motion, const CellLayout
              const Grasp& grasp, const CandidateMotion& candidate) -> std::optional<std::string> {
     const RigidTransform X_BE = ToolPoseAtGrasp(grasp, radius_m, bin);
     const RigidTransform X_NE = bin.X_BN.inverse() * X_BE;
-    const double rise_m = std::max(0.0, carry_m - X_NE.translation().z());
-    const RigidTransform X_BEOver = bin.X_BN * Translation(0, 0, rise_m) * X_NE;
-
-    const std::optional<JointVector> q_over = motion.Reach(X_BEOver);
+    const bool leans = X_NE.linear()(2, 2) > -kUpright;
+    const double rise_m = leans ? kLeanFrom_m : std::max(0.0, carry_m - X_NE.translation().z());
+    const RigidTransform X_NEOver = X_NE * Translation(0, 0, -rise_m);
+    const std::optional<JointVector> q_over = motion.Reach(bin.X_BN * Upright(X_NEOver));
     if (!q_over) return "the place over the grasp is out of reach";
     MotionOptions options;
     options.finger_clearance_m = kFingerClearance_m;
     options.opening_m = grasp.opening_m;
-    const MotionResult down = motion.PlanLine(*q_over, X_BE, options);
+    std::vector<RigidTransform> X_BE_down = {X_BE};
+    if (leans) X_BE_down.insert(X_BE_down.begin(), bin.X_BN * X_NEOver);
+    const MotionResult down = motion.PlanPolyline(*q_over, X_BE_down, options);
     if (const auto* refused = std::get_if<MotionRejection>(&down)) {
       return "approach: " + refused->reason;
     }

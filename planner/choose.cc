@@ -95,7 +95,7 @@ class Chooser {
       target.sites = FindGraspSites(scene_, tube, points_N_, bin_, config_);
       Report(target.sites.rejections);
       if (target.sites.sites.empty()) {
-        std::string reason = "no place where the gripper fits";
+        std::string reason = "no place where the gripper fits, upright or leaning";
         if (!target.sites.rejections.empty()) {
           const Rejection& middle = target.sites.rejections[target.sites.rejections.size() / 2];
           reason += ", for example " + middle.grasp + ": " + middle.reason;

@@ -17,7 +17,10 @@ constexpr double kOwnReach_m = 0.045;  // The tube itself is an obstacle from th
 constexpr double kTangentWindow_m = 0.03;
 constexpr double kGripperReach_m = 0.20;  // Of the gripper's body from E.
 constexpr double kTurnStep_m = 0.01;      // Between poses of a motion that turns.
-constexpr double kNearEnd_m = 0.012;      // Just more than half a pad.
+constexpr double kMostTilt_deg = 35.0;
+constexpr double kFloorRoom_m = 0.002;  // Between a tilted finger and the floor.
+constexpr double kLeastHold_m = 0.005;  // Of the pads below the tube's axis.
+constexpr double kNearEnd_m = 0.012;    // Just more than half a pad.
 // Room between tube and pad on either side, metres, from comfortable to what arm and camera need.
 constexpr std::array<double, 6> kSideRoom_m = {0.020, 0.015, 0.011, 0.008, 0.006, 0.0045};
 
@@ -78,11 +81,17 @@ struct Fit {
   std::string reason;  // Empty when it fits.
 };
 
+// Of a tool from upright.
+double TiltOf(const RigidTransform& X_NG) {
+  return std::acos(std::clamp(-X_NG.linear()(2, 2), -1.0, 1.0));
+}
+
 Fit CheckPoints(const Surroundings& around, const RigidTransform& X_NG, const GripperBoxes& boxes) {
   const std::array<OrientedBox, 4> solid = {
       Moved(X_NG, boxes.finger[0]), Moved(X_NG, boxes.finger[1]), Moved(X_NG, boxes.chassis),
       Moved(X_NG, boxes.above_tube)};
-  const double reach = boxes.chassis.half_m.y() + 0.02;
+  // A tilted body lies aside of E.
+  const double reach = boxes.chassis.half_m.y() + 0.02 + kGripperReach_m * std::sin(TiltOf(X_NG));
   int count = 0;
   for (const Vector3& p : around.points_N) {
     const Vector3 apart = p - X_NG.translation();
@@ -129,8 +138,15 @@ Fit CheckFit(const Surroundings& around, const std::vector<Surroundings::Obstacl
   return fit;
 }
 
+// How the tool stands at a place of the tube.
+struct Stance {
+  double yaw_rad = 0.0;   // Off the tube's cross direction.
+  double lean_rad = 0.0;  // To a side of the tube, about its axis.
+  bool square = false;    // Also along the tube, until it is square to the tangent.
+};
+
 // Vertical tool, x along `along` or against it: the one that points along B's x.
-RigidTransform GraspPose(const Vector3& p_NE, const Vector3& along, const Bin& bin) {
+Matrix3 UprightTool(const Vector3& along, const Bin& bin) {
   Vector3 x(along.x(), along.y(), 0.0);
   x.normalize();
   const Vector3 x_B = bin.X_BN.linear() * x;
@@ -139,7 +155,33 @@ RigidTransform GraspPose(const Vector3& p_NE, const Vector3& along, const Bin& b
   R_NG.col(0) = x;
   R_NG.col(2) = -Vector3::UnitZ();
   R_NG.col(1) = R_NG.col(2).cross(R_NG.col(0));
-  return MakeTransform(R_NG, p_NE);
+  return R_NG;
+}
+
+// Angle about the tool's y that turns its x along a tangent, as far as a tool may tilt.
+double SquareTo(const Vector3& tangent, const Matrix3& R_NG) {
+  const double rise = R_NG.col(0).dot(tangent) < 0.0 ? -tangent.z() : tangent.z();
+  const double most = Radians(kMostTilt_deg);
+  return std::clamp(std::asin(std::clamp(rise, -1.0, 1.0)), -most, most);
+}
+
+double LowestPoint(const OrientedBox& box_N) {
+  return box_N.X_AB.translation().z() - box_N.X_AB.linear().row(2).cwiseAbs().dot(box_N.half_m);
+}
+
+// How far back along a tilted tool E stays from the tube's axis: as upright, or more where a finger
+// would come too near to the floor. Nothing when the pads would not hold the tube any more.
+std::optional<double> HeightOverAxis(const Vector3& p_NAxis, const Matrix3& R_NG, double opening_m,
+                                     double radius_m, const GripperSpec& spec) {
+  double over_m = GraspHeightOverAxis(p_NAxis.z(), spec);
+  const double down = -R_NG(2, 2);
+  if (down == 1.0) return over_m;
+  const RigidTransform X_NG = MakeTransform(R_NG, p_NAxis - over_m * R_NG.col(2));
+  const double low_m =
+      LowestPoint(Moved(X_NG, MakeGripperBoxes(opening_m, radius_m, over_m).fingers));
+  over_m += std::max(0.0, kFloorRoom_m - low_m) / down;
+  if (over_m > 0.5 * spec.pad_height_m - kLeastHold_m) return std::nullopt;
+  return over_m;
 }
 
 // Least distance of the gripper to the bin's walls on a motion, at most kEnough_m.
@@ -173,13 +215,16 @@ struct SiteResult {
   std::string reason;
 };
 
-// The best opening at one point of the tube and one yaw off its cross direction.
-SiteResult TrySite(const Surroundings& around, double at_m, double yaw_off_rad) {
+// The best opening at one point of the tube and one stance.
+SiteResult TrySite(const Surroundings& around, double at_m, const Stance& stance) {
   const PerceivedTube& tube = around.tube;
   const GripperSpec spec;
   const Vector3 axis = PointAt(tube.centerline_N, at_m);
   const Vector3 tangent = TangentAt(tube.centerline_N, at_m, kTangentWindow_m);
-  const double slope_deg = Degrees(std::asin(std::min(1.0, std::abs(tangent.z()))));
+  Matrix3 R_NG = UprightTool(RotZ(stance.yaw_rad) * tangent, around.bin);
+  const double square_rad = stance.square ? SquareTo(tangent, R_NG) : 0.0;
+  const double slope_deg =
+      Degrees(std::asin(std::min(1.0, std::abs(tangent.z()))) - std::abs(square_rad));
   if (slope_deg > around.config.max_slope_deg) {
     return {{},
             "slope " + Number(std::round(slope_deg)) + " degrees, at most " +
@@ -190,20 +235,28 @@ SiteResult TrySite(const Surroundings& around, double at_m, double yaw_off_rad) 
       return {{}, "within two radii of a crossing under another tube"};
     }
   }
-  const double over_axis = GraspHeightOverAxis(axis.z(), spec);
-  const RigidTransform X_NG =
-      GraspPose(axis + Vector3(0, 0, over_axis), RotZ(yaw_off_rad) * tangent, around.bin);
+  if (stance.square || stance.lean_rad != 0.0) {
+    R_NG = R_NG * RotY(square_rad) * RotX(stance.lean_rad);
+    if (-R_NG(2, 2) < std::cos(Radians(kMostTilt_deg)) - 1e-9) return {{}, "tilted too far"};
+  }
   const std::vector<Surroundings::Obstacle> own = OwnObstacles(tube, at_m);
   // Half the gap that the tube fills between pads that stand oblique to it.
-  const double filled = tube.radius_m / std::cos(yaw_off_rad) +
-                        0.5 * spec.pad_width_m * std::tan(std::abs(yaw_off_rad));
+  const double filled = tube.radius_m / std::cos(stance.yaw_rad) +
+                        0.5 * spec.pad_width_m * std::tan(std::abs(stance.yaw_rad));
   std::optional<GraspSite> best;
   double best_room = -1.0;
   std::string reason = "the tube is too thick for the gripper";
   for (const double side : kSideRoom_m) {
     const double opening = 2.0 * (filled + side);
     if (opening > spec.stroke_m) continue;
-    const Fit fit = CheckFit(around, own, X_NG, opening, over_axis);
+    const std::optional<double> over_axis =
+        HeightOverAxis(axis, R_NG, opening, tube.radius_m, spec);
+    if (!over_axis) {
+      reason = "tilted, a finger would reach into the floor";
+      continue;
+    }
+    const RigidTransform X_NG = MakeTransform(R_NG, axis - *over_axis * R_NG.col(2));
+    const Fit fit = CheckFit(around, own, X_NG, opening, *over_axis);
     reason = fit.reason;  // The narrowest opening's is reported.
     const double room = std::min(side, fit.clearance_m);
     if (!fit.reason.empty() || room <= best_room) continue;
@@ -211,6 +264,20 @@ SiteResult TrySite(const Surroundings& around, double at_m, double yaw_off_rad) 
     best = GraspSite{{tube.id, at_m, X_NG, opening, fit.clearance_m, 0.0}, axis.z()};
   }
   return {best, best ? "" : reason};
+}
+
+// Stances to try, those of a line only where none of the lines before gave a site.
+std::vector<std::vector<Stance>> Stances() {
+  std::vector<std::vector<Stance>> out = {{{}}, {}, {}};
+  for (const double yaw_deg : {0.0, 15.0, -15.0, 30.0, -30.0}) {
+    out[1].push_back({Radians(yaw_deg), 0.0, false});
+  }
+  for (const double lean_deg : {0.0, 12.0, -12.0, 24.0, -24.0, 35.0, -35.0}) {
+    for (const bool square : {false, true}) {
+      if (lean_deg != 0.0 || square) out[2].push_back({0.0, Radians(lean_deg), square});
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -222,14 +289,14 @@ GraspSites FindGraspSites(const TubeScene& scene, const PerceivedTube& tube,
   const double length = Length(tube.centerline_N);
   GraspSites out;
   // Sites at both sides of the middle at equal steps, so that reversing a tube changes nothing.
-  const auto sweep = [&](double end_m, const std::vector<double>& yaws_deg, bool report) {
+  const auto sweep = [&](double end_m, const std::vector<Stance>& stances, bool report) {
     const int half = static_cast<int>(std::floor((0.5 * length - end_m) / config.grasp_step_m));
     for (int k = -half; k <= half; ++k) {
       const double at_m = 0.5 * length + k * config.grasp_step_m;
       SiteResult first;
       bool found = false;
-      for (std::size_t j = 0; j < yaws_deg.size() && !found; ++j) {
-        const SiteResult result = TrySite(around, at_m, Radians(yaws_deg[j]));
+      for (std::size_t j = 0; j < stances.size() && !found; ++j) {
+        const SiteResult result = TrySite(around, at_m, stances[j]);
         if (j == 0) first = result;
         if (!result.site) continue;
         out.sites.push_back(*result.site);
@@ -238,9 +305,10 @@ GraspSites FindGraspSites(const TubeScene& scene, const PerceivedTube& tube,
       if (!found && report) out.rejections.push_back({tube.id, "", SiteName(at_m), first.reason});
     }
   };
-  sweep(config.grasp_end_m, {0.0}, true);
-  if (out.sites.empty()) {
-    sweep(std::min(kNearEnd_m, config.grasp_end_m), {0.0, 15.0, -15.0, 30.0, -30.0}, false);
+  const std::vector<std::vector<Stance>> stances = Stances();
+  for (std::size_t k = 0; k < stances.size() && out.sites.empty(); ++k) {
+    sweep(k == 0 ? config.grasp_end_m : std::min(kNearEnd_m, config.grasp_end_m), stances[k],
+          k == 0);
   }
   return out;
 }
@@ -280,7 +348,8 @@ GraspSet RankGrasps(const GraspSites& sites, const PerceivedTube& tube,
     const double low = 1.0 - std::clamp(site.height_m / std::max(top_m, 1e-6), 0.0, 1.0);
     const double tight = 1.0 - std::clamp(grasp.clearance_m / kEnough_m, 0.0, 1.0);
     grasp.cost = config.weight_height * low + config.weight_centre * off_centre +
-                 config.weight_trajectory * trajectory + config.weight_clearance * tight;
+                 config.weight_trajectory * trajectory + config.weight_clearance * tight +
+                 config.weight_tilt * TiltOf(grasp.X_NG) / Radians(kMostTilt_deg);
     set.grasps.push_back(grasp);
   }
   std::stable_sort(set.grasps.begin(), set.grasps.end(),

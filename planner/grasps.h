@@ -20,7 +20,7 @@ struct GraspSites {
   std::vector<Rejection> rejections;
 };
 
-/// Where a vertical gripper fits (Leão et al. 2020, section 3.4.1, with exact distances instead of
+/// Where a gripper fits (Leão et al. 2020, section 3.4.1, with exact distances instead of
 /// point counts alone): points every `grasp_step_m` along the curve and `grasp_end_m` from its
 /// ends, yaw across the tangent (of the two equal yaws the one whose x points along B's x), E at
 /// GraspHeightOverAxis. Rejected are steep tangents, places within two radii of a crossing under
@@ -28,8 +28,10 @@ struct GraspSites {
 /// `finger_clearance_m` of another tube, of a farther part of the same tube or of a wall, or at
 /// which more than `max_points` thinned measured points lie in the way. Of the openings that fit,
 /// the one with the best balance of room inside and outside the fingers is taken, the wider of
-/// equals. Only where no site of the tube passes, yaws up to 30 degrees off and points 12 mm from
-/// the ends are tried too. `points_N`: ThinPoints of the views, or empty.
+/// equals. The tool is vertical. Only where no site of the tube passes, yaws up to 30 degrees off
+/// and points 12 mm from the ends are tried too; only where none of these does, tools that lean up
+/// to 35 degrees to a side or along a steep tube, E as far back along the tool as the fingers need
+/// over the floor. `points_N`: ThinPoints of the views, or empty.
 GraspSites FindGraspSites(const TubeScene& scene, const PerceivedTube& tube,
                           const std::vector<Vector3>& points_N, const Bin& bin,
                           const PlannerConfig& config);

@@ -16,6 +16,7 @@ namespace {
 constexpr double kSameGrasp_m = 0.015;       ///< A grasp this near a failed one is the same again.
 constexpr double kNothingOpening_m = 0.004;  ///< Closed fingers: nothing between them.
 constexpr double kContactSlack_m = 0.004;    ///< Contact this near the grasp still closes.
+constexpr double kUpright = 0.9999;          ///< Of the tool's axis along the vertical.
 constexpr int kMostRecoveries = 5;           ///< Rejected motions in one round.
 
 /// Several hang in the fingers, and the round was to end there.
@@ -107,7 +108,8 @@ class Round {
     const Vector3 back_B = -X_BG.linear().col(2);
     RigidTransform above = X_BG;
     above.translation() += speeds.approach_m * back_B;
-    c_.mover.Transfer(above, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
+    // The tool weighs pointing down, so its own weight is taken off pointing down.
+    c_.mover.Transfer(Upright(above), speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
     {
       const CycleContext::Timed weighing(c_, &AttemptReport::SimTime::settle);
       Wait(c_.cell, 0.3);
@@ -116,6 +118,9 @@ class Round {
     }
     RigidTransform near = X_BG;
     near.translation() += speeds.guarded_m * back_B;
+    if (plan.grasp.X_NG.linear()(2, 2) > -kUpright) {
+      c_.mover.Line(above, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
+    }
     c_.mover.Line(near, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
     const WaitOutcome descent =
         c_.mover.GuardedLine(X_BG, speeds.guarded_speed_m_s, speeds.guard_force_N);

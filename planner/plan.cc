@@ -26,6 +26,8 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
           {0.0, 10.0});
   v.Field("weight_clearance", "weight of little room around the gripper", weight_clearance,
           {0.0, 10.0});
+  v.Field("weight_tilt", "weight of a tool that leans, by its share of 35 degrees", weight_tilt,
+          {0.0, 10.0});
   v.Field("weight_confidence", "weight of doubt about the tube", weight_confidence, {0.0, 10.0});
   v.Field("weight_release", "weight of setting fewer than three tubes free", weight_release,
           {0.0, 10.0});

@@ -29,7 +29,8 @@ struct PlannerConfig {
   double finger_clearance_m = 0.002;  ///< Least distance of fingers and gripper body to all.
   int max_points = 6;  ///< Largest number of 3 mm cubes with measured points in the way.
   double weight_height = 0.2, weight_centre = 0.5, weight_trajectory = 0.3;
-  double weight_clearance = 0.1;   ///< Not in the paper: little room around the fingers costs.
+  double weight_clearance = 0.1;  ///< Not in the paper: little room around the fingers costs.
+  double weight_tilt = 0.1;       ///< Not in the paper: tools that lean cost, 35 degrees this much.
   double weight_confidence = 0.2;  ///< Not in the paper: doubt about the tube costs.
   double weight_release = 0.1;     ///< Not in the paper: setting fewer than three tubes free costs.
   double weight_extra = 3.0;       ///< Not in the paper: probability that another tube comes along.
@@ -42,7 +43,7 @@ struct PlannerConfig {
   /// alone. 0: none, as in the paper.
   int separated = 1;
   /// After so many roll-outs the best motion of those asked about is taken: time for a decision.
-  int max_rollouts = 64;
+  int max_rollouts = 40;
   int samples = 5;          ///< Roll-outs of the best candidates; 1 is the paper's cost.
   int refined = 4;          ///< So many of the best candidates get all samples.
   int max_candidates = 12;  ///< Motions that are simulated before it is known whether one will do.

@@ -26,12 +26,13 @@ std::vector<RigidTransform> ToolWay(const MotionWay& way, const RigidTransform& 
   for (std::size_t k = 1; k < way.waypoints_N.size(); ++k) {
     out.push_back(PoseAt(way, k) * X_NE_grasp);
   }
-  if (!out.empty() && !PointsDown(out.back())) {
-    const RigidTransform& last = out.back();
-    out.push_back(
-        MakeTransform(TurnDown(last).toRotationMatrix() * last.linear(), last.translation()));
-  }
+  if (!out.empty() && !PointsDown(out.back())) out.push_back(Upright(out.back()));
   return out;
+}
+
+RigidTransform Upright(const RigidTransform& X_NE) {
+  if (PointsDown(X_NE)) return X_NE;
+  return MakeTransform(TurnDown(X_NE).toRotationMatrix() * X_NE.linear(), X_NE.translation());
 }
 
 SplitWay SplitAt(const std::vector<RigidTransform>& X_NE, const RigidTransform& X_NE_grasp,

@@ -11,6 +11,10 @@ namespace tubetwin {
 /// about E, the shortest way, until it does: that is how it weighs and places.
 std::vector<RigidTransform> ToolWay(const MotionWay& way, const RigidTransform& X_NE_grasp);
 
+/// The pose turned about E, the shortest way, until the tool points down; unchanged where it does
+/// to within 0.01 rad.
+RigidTransform Upright(const RigidTransform& X_NE);
+
 /// A tool's way in two parts, between which the load is weighed for the first time.
 struct SplitWay {
   std::vector<RigidTransform> first, rest;

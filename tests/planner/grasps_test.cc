@@ -3,6 +3,7 @@
 #include "hw_bridge/base/random.h"
 #include "models/gripper_spec.h"
 #include "planner/box_distance.h"
+#include "planner/gripper_boxes.h"
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"
 
@@ -141,10 +142,10 @@ TEST_CASE("Measured points that no tube explains block the place where they lie"
 }
 
 TEST_CASE("Steep stretches are not grasped", "[unit]") {
-  const TubeScene scene = PerfectScene({StraightLine({0, 0, 0.02}, {0.1, 0, 0.14})}, kRadius);
+  const TubeScene scene = PerfectScene({StraightLine({0, 0, 0.02}, {0.02, 0, 0.18})}, kRadius);
   const GraspSites sites = Sites(scene, 0);
   CHECK(sites.sites.empty());
-  CHECK(AnyReason(sites.rejections, "slope 50 degrees, at most 40"));
+  CHECK(AnyReason(sites.rejections, "slope 83 degrees, at most 40"));
 }
 
 TEST_CASE("The ranking prefers the true centre of mass, then high places", "[unit]") {
@@ -189,6 +190,70 @@ TEST_CASE("No grasp lies in the section that an escape forbids", "[unit]") {
   REQUIRE_FALSE(set.grasps.empty());
   for (const Grasp& grasp : set.grasps) CHECK(grasp.at_m > 0.25);
   CHECK(AnyReason(set.rejections, "would pass under the other tube"));
+}
+
+double TiltOf(const Grasp& grasp) { return std::acos(-grasp.X_NG.linear()(2, 2)); }
+
+TEST_CASE("A tube too steep for an upright tool is grasped square to it", "[unit]") {
+  const double slope = Radians(60.0);
+  const Vector3 foot(0, 0, 0.05), along(std::cos(slope), 0, std::sin(slope));
+  const TubeScene scene = PerfectScene({StraightLine(foot, foot + 0.4 * along)}, kRadius);
+  const GraspSites found = Sites(scene, 0);
+  CHECK(AnyReason(found.rejections, "slope 60 degrees"));
+  REQUIRE(!found.sites.empty());
+  for (const GraspSite& site : found.sites) {
+    CHECK(TiltOf(site.grasp) == Approx(Radians(35.0)));
+    // Along the tube, which stays between the pads.
+    CHECK(std::abs(site.grasp.X_NG.linear().col(1).dot(along)) < 1e-9);
+    CHECK(std::abs(site.grasp.X_NG.linear().col(0).dot(along)) > std::cos(Radians(26.0)));
+    const Vector3 axis_E =
+        site.grasp.X_NG.inverse() * PointAt(scene.tubes[0].centerline_N, site.grasp.at_m);
+    CHECK(axis_E.head<2>().norm() < 1e-9);
+    CHECK(axis_E.z() > 0.0);
+  }
+}
+
+TEST_CASE("A tube under an overhang is grasped by a tool that leans away from it", "[unit]") {
+  // Higher tubes at one side leave no room for the gripper's body straight above.
+  const TubeScene scene = PerfectScene({StraightLine({-0.1, 0, 0.06}, {0.1, 0, 0.06}),
+                                        StraightLine({-0.25, 0.046, 0.19}, {0.25, 0.046, 0.19}),
+                                        StraightLine({-0.25, 0.046, 0.165}, {0.25, 0.046, 0.165})},
+                                       kRadius);
+  const GraspSites found = Sites(scene, 0);
+  CHECK(AnyReason(found.rejections, "chassis"));
+  REQUIRE(!found.sites.empty());
+  const PlannerConfig config;
+  for (const GraspSite& site : found.sites) {
+    CHECK(TiltOf(site.grasp) > Radians(5.0));
+    CHECK(TiltOf(site.grasp) <= Radians(35.0) + 1e-9);
+    CHECK(-site.grasp.X_NG.linear()(1, 2) < 0.0);  // The tool comes from -y.
+    CHECK(site.grasp.clearance_m >= config.finger_clearance_m);
+  }
+  // Upright grasps are never mixed with leaning ones, and lean costs.
+  const TubeScene alone = PerfectScene({StraightLine({-0.1, 0, 0.06}, {0.1, 0, 0.06})}, kRadius);
+  for (const GraspSite& site : Sites(alone, 0).sites) CHECK(TiltOf(site.grasp) < 1e-6);
+}
+
+TEST_CASE("A leaning tool keeps its fingers over the floor", "[unit]") {
+  RandomStream stream(5, 0, "lean");
+  int leaning = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const double height = stream.Uniform(kRadius, 0.08), room = stream.Uniform(0.035, 0.055);
+    const TubeScene scene =
+        PerfectScene({StraightLine({-0.1, 0, height}, {0.1, 0, height}),
+                      StraightLine({-0.25, room, height + 0.12}, {0.25, room, height + 0.12}),
+                      StraightLine({-0.25, room, height + 0.09}, {0.25, room, height + 0.09})},
+                     kRadius);
+    for (const GraspSite& site : Sites(scene, 0).sites) {
+      const GripperBoxes boxes = MakeGripperBoxes(site.grasp.opening_m, kRadius, 0.0);
+      const OrientedBox fingers = Moved(site.grasp.X_NG, boxes.fingers);
+      const double low = fingers.X_AB.translation().z() -
+                         fingers.X_AB.linear().row(2).cwiseAbs().dot(fingers.half_m);
+      CHECK(low >= 0.002 - 1e-9);
+      if (TiltOf(site.grasp) > 0.01) ++leaning;
+    }
+  }
+  CHECK(leaning > 100);
 }
 
 }  // namespace
