@@ -56,6 +56,12 @@ void WritePcd(const OrganizedCloud& cloud, const std::string& path);
 /// and `frame_binning` (1). Throws like WritePcd.
 void WritePly(const OrganizedCloud& cloud, const std::string& path);
 
+/// Writes PLY as PhoXi Control saves a frame in camera space: millimetres without comments, vertex
+/// x y z Texture32 (the intensity, or 0) with invalid points 0 0 0, `camera` identity, then the
+/// elements of WritePly; labels and X_NS are not stored. Read back, each coordinate is within one
+/// rounding of float32. Throws like WritePcd.
+void WritePhoxiPly(const OrganizedCloud& cloud, std::uint32_t frame_index, const std::string& path);
+
 /// Reads ascii or binary little-endian PLY. Units: metres, unless the header says `comment units
 /// mm` or has PhoXi's element `phoxi_frame_params` without a units comment (that vendor's files are
 /// in millimetres). With `comment frame S` (our own files) vertices are in S and `camera` is X_NS;

@@ -43,6 +43,16 @@ void FillPly(const OrganizedCloud& cloud, std::size_t i, char* out) {
   if (!cloud.label.empty()) std::memcpy(out, &cloud.label[i], 4);
 }
 
+void FillPhoxiPly(const OrganizedCloud& cloud, std::size_t i, char* out) {
+  const Eigen::Vector3f& p = cloud.p_SP[i];
+  const Eigen::Vector3f stored_mm = IsValid(p)
+                                        ? Eigen::Vector3f((1000.0 * p.cast<double>()).cast<float>())
+                                        : Eigen::Vector3f(0, 0, 0);
+  std::memcpy(out, stored_mm.data(), 12);
+  const float texture = cloud.intensity.empty() ? 0.0f : cloud.intensity[i];
+  std::memcpy(out + 12, &texture, 4);
+}
+
 /// Focal length in pixels of the pinhole that an organised cloud fits; 0 when nothing tells it.
 double FittedFocal(const OrganizedCloud& cloud) {
   double along = 0, square = 0;
@@ -64,6 +74,39 @@ void Append(std::string& out, T value) {
 }
 
 constexpr int kDistortions = 14;
+
+/// PhoXi's elements camera and phoxi_frame_params.
+void AddFrameHeader(std::string& header, const std::string& camera_type) {
+  header += "element camera 1\n";
+  for (const char* name : {"view_p", "x_axis", "y_axis", "z_axis"}) {
+    for (const char axis : {'x', 'y', 'z'}) {
+      header += "property " + camera_type + " " + name + axis + "\n";
+    }
+  }
+  header +=
+      "element phoxi_frame_params 1\nproperty uint frame_width\nproperty uint frame_height\n"
+      "property uint frame_index\nproperty float frame_start_time\nproperty float frame_duration\n"
+      "property float frame_computation_duration\nproperty float frame_transfer_duration\n"
+      "property int total_scan_count\n";
+}
+
+template <class T>
+void AddCamera(const RigidTransform& X_NS, std::string& trailer) {
+  const Matrix3 R_NS = X_NS.linear();
+  for (int r = 0; r < 3; ++r) Append(trailer, static_cast<T>(X_NS.translation()[r]));
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) Append(trailer, static_cast<T>(R_NS(r, c)));
+  }
+}
+
+void AddFrameParameters(const OrganizedCloud& cloud, std::uint32_t frame_index,
+                        std::string& trailer) {
+  Append(trailer, static_cast<std::uint32_t>(cloud.width));
+  Append(trailer, static_cast<std::uint32_t>(cloud.height));
+  Append(trailer, frame_index);
+  for (int i = 0; i < 4; ++i) Append(trailer, 0.0f);
+  Append(trailer, std::int32_t{1});
+}
 
 void AddPinholeHeader(std::string& header) {
   const auto numbered = [&](const char* element, const char* name, int count) {
@@ -117,42 +160,39 @@ void WritePcd(const OrganizedCloud& cloud, const std::string& path) {
 
 void WritePly(const OrganizedCloud& cloud, const std::string& path) {
   CheckShape(cloud);
-  const std::size_t n = cloud.size();
   std::string header =
       "ply\nformat binary_little_endian 1.0\ncomment units m\n"
       "comment frame S (x right, y down, z forward); camera is the pose of S in the bin\n"
       "element vertex " +
-      std::to_string(n) + "\nproperty float x\nproperty float y\nproperty float z\n";
+      std::to_string(cloud.size()) + "\nproperty float x\nproperty float y\nproperty float z\n";
   if (!cloud.intensity.empty()) header += "property float intensity\n";
   if (!cloud.label.empty()) header += "property uint label\n";
-  header += "element camera 1\n";
-  for (const char* name : {"view_p", "x_axis", "y_axis", "z_axis"}) {
-    for (const char axis : {'x', 'y', 'z'}) {
-      header += std::string("property double ") + name + axis + "\n";
-    }
-  }
-  header +=
-      "element phoxi_frame_params 1\nproperty uint frame_width\nproperty uint frame_height\n"
-      "property uint frame_index\nproperty float frame_start_time\nproperty float frame_duration\n"
-      "property float frame_computation_duration\nproperty float frame_transfer_duration\n"
-      "property int total_scan_count\n";
+  AddFrameHeader(header, "double");
   if (cloud.organized()) AddPinholeHeader(header);
   header += "end_header\n";
   std::string trailer;
-  const Matrix3 R_NS = cloud.X_NS.linear();
-  for (int r = 0; r < 3; ++r) Append(trailer, cloud.X_NS.translation()[r]);
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3; ++r) Append(trailer, R_NS(r, c));
-  }
-  Append(trailer, static_cast<std::uint32_t>(cloud.width));
-  Append(trailer, static_cast<std::uint32_t>(cloud.height));
-  Append(trailer, std::uint32_t{0});
-  for (int i = 0; i < 4; ++i) Append(trailer, 0.0f);
-  Append(trailer, std::int32_t{1});
+  AddCamera<double>(cloud.X_NS, trailer);
+  AddFrameParameters(cloud, 0, trailer);
   if (cloud.organized()) AddPinhole(cloud, trailer);
   const std::size_t record_size =
       12 + (cloud.intensity.empty() ? 0 : 4) + (cloud.label.empty() ? 0 : 4);
-  WriteRecords(path, header, n, record_size, trailer, FillPly, cloud);
+  WriteRecords(path, header, cloud.size(), record_size, trailer, FillPly, cloud);
+}
+
+void WritePhoxiPly(const OrganizedCloud& cloud, std::uint32_t frame_index,
+                   const std::string& path) {
+  CheckShape(cloud);
+  std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(cloud.size()) +
+      "\nproperty float x\nproperty float y\nproperty float z\nproperty float Texture32\n";
+  AddFrameHeader(header, "float");
+  AddPinholeHeader(header);
+  header += "end_header\n";
+  std::string trailer;
+  AddCamera<float>(RigidTransform::Identity(), trailer);
+  AddFrameParameters(cloud, frame_index, trailer);
+  AddPinhole(cloud, trailer);
+  WriteRecords(path, header, cloud.size(), 16, trailer, FillPhoxiPly, cloud);
 }
 
 }  // namespace tubetwin

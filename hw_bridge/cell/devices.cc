@@ -1,5 +1,8 @@
 #include "hw_bridge/cell/devices.h"
 
+#include <memory>
+#include <utility>
+
 namespace tubetwin {
 
 const char* ToString(ArmMode mode) {
@@ -22,6 +25,12 @@ const char* ToString(ArmMode mode) {
       return "fault";
   }
   return "unknown";
+}
+
+std::function<OrganizedCloud()> Scanner::TakeLater() {
+  // Shared because functions are copied; only one of the copies is called.
+  const auto cloud = std::make_shared<OrganizedCloud>(Take());
+  return [cloud] { return std::move(*cloud); };
 }
 
 }  // namespace tubetwin

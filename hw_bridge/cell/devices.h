@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -119,6 +120,9 @@ class Scanner {
   virtual ScanStatus Status() const = 0;
   /// The finished scan, once; its X_NS is the pose the pipeline believes. Precondition: kReady.
   virtual OrganizedCloud Take() = 0;
+  /// Like Take(), but what is left to compute (a simulated scanner casts its rays) is done by the
+  /// function returned: any thread may call it, once, while the cell goes on and after it is gone.
+  virtual std::function<OrganizedCloud()> TakeLater();
   virtual std::string FailureReason() const { return {}; }
 };
 

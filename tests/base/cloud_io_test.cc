@@ -255,6 +255,25 @@ TEST_CASE("An organised PLY carries PhoXi's elements in their order, its pinhole
   CHECK(resolution[1] == 30);
 }
 
+TEST_CASE("A cloud written as a PhoXi frame says nothing but what PhoXi Control would", "[unit]") {
+  const Folder folder;
+  OrganizedCloud cloud = SomeCloud(4, 3, true, true);
+  cloud.X_NS = Translation(1, 2, 3);
+  WritePhoxiPly(cloud, 17, folder.File("frame.ply"));
+  const std::string text = ReadFile(folder.File("frame.ply"));
+  CHECK(text.find("comment") == std::string::npos);
+  CHECK(text.find("label") == std::string::npos);
+  const OrganizedCloud back = ReadPly(folder.File("frame.ply"));
+  REQUIRE(back.width == 4);
+  REQUIRE(back.height == 3);
+  CHECK(back.X_NS.isApprox(RigidTransform::Identity()));
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    REQUIRE(IsValid(back.p_SP[i]) == IsValid(cloud.p_SP[i]));
+    constexpr float kTwoRoundings = 1.3e-7f;  // To float32 millimetres and back.
+    if (IsValid(cloud.p_SP[i])) CHECK(back.p_SP[i].isApprox(cloud.p_SP[i], kTwoRoundings));
+  }
+}
+
 TEST_CASE("An unorganised PLY with other properties and faces is read as points", "[unit]") {
   const Folder folder;
   std::string text =

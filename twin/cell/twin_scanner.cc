@@ -40,13 +40,19 @@ ScanStatus TwinScanner::Status() const {
   return world_.now() < shot_->ready ? ScanStatus::kBusy : ScanStatus::kReady;
 }
 
-OrganizedCloud TwinScanner::Take() {
+OrganizedCloud TwinScanner::Take() { return TakeLater()(); }
+
+std::function<OrganizedCloud()> TwinScanner::TakeLater() {
   TT_CHECK(Status() == ScanStatus::kReady);
-  OrganizedCloud cloud = CastScan(shot_->geometry, shot_->X_BS, setup_.settings,
-                                  stream_.Fork("shot", shot_->index), setup_.parallelism);
-  cloud.X_NS = shot_->X_NSBelieved;
+  const auto cast = [shot = std::move(*shot_), settings = setup_.settings,
+                     parallelism = setup_.parallelism, stream = stream_] {
+    OrganizedCloud cloud =
+        CastScan(shot.geometry, shot.X_BS, settings, stream.Fork("shot", shot.index), parallelism);
+    cloud.X_NS = shot.X_NSBelieved;
+    return cloud;
+  };
   shot_.reset();
-  return cloud;
+  return cast;
 }
 
 }  // namespace tubetwin

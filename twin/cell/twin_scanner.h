@@ -29,6 +29,7 @@ class TwinScanner : public Scanner {
   CommandResult Trigger() override;
   ScanStatus Status() const override;
   OrganizedCloud Take() override;
+  std::function<OrganizedCloud()> TakeLater() override;
 
   /// Scans so far, which the noise of the next depends on. Precondition of reading: none runs or
   /// waits to be taken.

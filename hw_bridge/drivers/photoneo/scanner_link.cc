@@ -1,0 +1,34 @@
+#include "hw_bridge/drivers/photoneo/scanner_link.h"
+
+#include <utility>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/text.h"
+#include "hw_bridge/drivers/photoneo/folder_scanner.h"
+
+namespace tubetwin {
+
+void ScannerLinkConfig::Visit(ConfigVisitor& v) {
+  v.Choice("driver", "how scans are exchanged", driver, {"folder"});
+  v.Field("host", "gige: the scanner's IPv4 address", host);
+  v.Field("path", "folder: where triggers and scans are exchanged", path);
+  v.Field("timeout_s", "from a trigger to its whole scan, cell time", timeout_s, {0.1, 25.0});
+}
+
+void ScannerLinkConfig::ValidateOrThrow() const {
+  if (driver == "folder" && path.empty()) {
+    throw Error(ErrorKind::kConfig,
+                "cell.scanner.path is empty, the driver 'folder' needs the name of a folder");
+  }
+  if (!(rate > 0)) {
+    throw Error(ErrorKind::kConfig, "rate is " + Number(rate) + ", allowed are numbers over 0");
+  }
+}
+
+std::unique_ptr<Scanner> ConnectScanner(const ScannerLinkConfig& config,
+                                        ScannerPose believed_X_NS) {
+  config.ValidateOrThrow();
+  return std::make_unique<FolderScanner>(config, std::move(believed_X_NS));
+}
+
+}  // namespace tubetwin

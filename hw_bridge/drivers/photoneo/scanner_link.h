@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "hw_bridge/base/config.h"
+#include "hw_bridge/drivers/photoneo/threaded_scanner.h"
+
+namespace tubetwin {
+
+/// How to reach the scanner: `[cell.scanner]` of a cell file.
+struct ScannerLinkConfig {
+  std::string driver = "folder";   ///< "folder" (FolderScanner) or "gige" (GigeScanner).
+  std::string host = "127.0.0.1";  ///< gige: the scanner's IPv4 address.
+  std::string path;                ///< folder: where triggers and scans are exchanged.
+  double timeout_s = 10.0;         ///< From a trigger to its whole scan, cell time.
+  /// Cell time per wall time: of the whole cell, so the cell file's own key and not visited here.
+  double rate = 1.0;
+
+  void Visit(ConfigVisitor& v);
+  /// Throws Error(kConfig) for what the fields' own ranges cannot say.
+  void ValidateOrThrow() const;
+};
+
+/// The scanner that `config` names, ready to be triggered. Throws Error(kConfig), and
+/// Error(kDevice) naming device, place and what was awaited when it cannot be reached within 8 s.
+std::unique_ptr<Scanner> ConnectScanner(const ScannerLinkConfig& config, ScannerPose believed_X_NS);
+
+}  // namespace tubetwin

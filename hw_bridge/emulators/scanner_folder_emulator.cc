@@ -1,0 +1,173 @@
+#include "hw_bridge/emulators/scanner_folder_emulator.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+#include "hw_bridge/base/random.h"
+#include "hw_bridge/codecs/scan_folder.h"
+
+namespace tubetwin {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr TimeNs kPoll = std::chrono::milliseconds(10);
+
+/// Changes bytes of the header, as a bad cable or disk would: no reader can miss that.
+void CorruptFile(const std::string& path) {
+  std::string bytes = ReadFile(path);
+  for (std::size_t i = 3; i < bytes.size() && i < 64; i += 7) {
+    bytes[i] = static_cast<char>(bytes[i] ^ 0x95);
+  }
+  WriteFileAtomically(path, bytes);
+}
+
+void WriteGarbage(const std::string& path, std::uint64_t seed) {
+  RandomStream stream(seed, 0, "garbage scan");
+  std::string bytes(4096, '\0');
+  for (char& c : bytes) c = static_cast<char>(stream.Index(256));
+  WriteFileAtomically(path, bytes);
+}
+
+}  // namespace
+
+void ScannerFolderConfig::Visit(ConfigVisitor& v) {
+  v.Choice("format", "files that scans are written as", format, {"pcd", "ply"});
+  v.Field("keep", "how many scans stay in the folder", keep, {1, 100000});
+}
+
+ScannerFolderEmulator::ScannerFolderEmulator(Scanner& scanner, const ScannerFolderConfig& config)
+    : scanner_(scanner), config_(config) {
+  MakeFolder(config_.path);
+}
+
+ScannerFolderEmulator::~ScannerFolderEmulator() = default;  // A future of std::async waits.
+
+void ScannerFolderEmulator::Tick(TimeNs now) {
+  if (link_.freeze) return;
+  try {
+    if (scanning_) {
+      FollowScan();
+    } else if (writing_.valid()) {
+      if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+      Written written = writing_.get();
+      if (written.hidden.empty()) throw Error(ErrorKind::kIo, written.problem);
+      hidden_ = written.hidden;
+      publish_at_ = now + link_.delay + FromSeconds(fault_.delay_s);
+    } else if (hidden_) {
+      if (now >= publish_at_) Publish();
+    } else if (now >= next_poll_) {
+      next_poll_ = now + kPoll;
+      TakeTrigger();
+    }
+  } catch (const std::exception& error) {  // The folder is gone, the disk is full: go on.
+    last_problem_ = error.what();
+    hidden_.reset();
+    scanning_ = false;
+  }
+}
+
+void ScannerFolderEmulator::TakeTrigger() {
+  std::uint64_t newest = 0;
+  std::vector<fs::path> triggers;
+  for (const fs::directory_entry& file : fs::directory_iterator(config_.path)) {
+    const ScanFileName name = ParseScanFileName(file.path().filename().string());
+    if (name.kind != ScanFileName::Kind::kTrigger || !file.is_regular_file()) continue;
+    newest = std::max(newest, name.number);
+    triggers.push_back(file.path());
+  }
+  if (triggers.empty()) return;
+  for (const fs::path& trigger : triggers) fs::remove(trigger);
+  if (!link_.drop) Start(newest);
+}
+
+void ScannerFolderEmulator::Start(std::uint64_t number) {
+  ++triggers_;
+  number_ = number;
+  fault_ = faults_.Next();
+  if (fault_.fault == ScanFault::kNoAnswer) return;
+  if (fault_.fault == ScanFault::kRefused) return Refuse(fault_.reason);
+  const CommandResult triggered = scanner_.Trigger();
+  if (!triggered.accepted()) return Refuse(triggered.reason);
+  scanning_ = true;
+}
+
+void ScannerFolderEmulator::FollowScan() {
+  switch (scanner_.Status()) {
+    case ScanStatus::kBusy:
+      return;
+    case ScanStatus::kReady:
+      scanning_ = false;
+      return Write();
+    case ScanStatus::kFailed:
+      scanning_ = false;
+      return Refuse(scanner_.FailureReason());
+    case ScanStatus::kIdle:
+      scanning_ = false;
+      return Refuse("the scan got lost");
+  }
+}
+
+void ScannerFolderEmulator::Write() {
+  const std::string hidden =
+      config_.path + "/." + ScanFileNameOf(number_, ".part." + config_.format);
+  const auto write = [hidden, take = scanner_.TakeLater(), fault = fault_.fault, number = number_,
+                      corrupt = link_.corrupt, ply = config_.format == "ply"]() -> Written {
+    try {
+      OrganizedCloud cloud = take();
+      cloud.label.clear();
+      cloud.X_NS = RigidTransform::Identity();
+      if (fault == ScanFault::kEmptyCloud) ClearPoints(cloud);
+      if (fault == ScanFault::kGarbage) {
+        WriteGarbage(hidden, number);
+      } else if (ply) {
+        WritePhoxiPly(cloud, static_cast<std::uint32_t>(number), hidden);
+      } else {
+        WritePcd(cloud, hidden);
+      }
+      if (fault == ScanFault::kTruncated) fs::resize_file(hidden, fs::file_size(hidden) / 5 * 3);
+      if (corrupt) CorruptFile(hidden);
+      return {hidden, ""};
+    } catch (const std::exception& error) {
+      return {"", error.what()};
+    }
+  };
+  writing_ = std::async(std::launch::async, write);
+}
+
+void ScannerFolderEmulator::Publish() {
+  const std::string hidden = *std::exchange(hidden_, std::nullopt);
+  if (link_.drop) {
+    fs::remove(hidden);
+    return;
+  }
+  const std::string path = config_.path + "/" + ScanFileNameOf(number_, "." + config_.format);
+  if (link_.duplicate) {
+    const std::string copy = hidden + ".copy";
+    fs::copy_file(hidden, copy, fs::copy_options::overwrite_existing);
+    fs::rename(copy, path);
+  }
+  fs::rename(hidden, path);
+  ++answers_;
+  published_.push_back(path);
+  while (published_.size() > static_cast<std::size_t>(config_.keep)) {
+    fs::remove(published_.front());
+    published_.pop_front();
+  }
+}
+
+void ScannerFolderEmulator::Refuse(const std::string& reason) {
+  if (link_.drop) return;
+  const std::string path = config_.path + "/" + ScanFileNameOf(number_, ".error");
+  WriteFileAtomically(path, reason + "\n");
+  ++answers_;
+  published_.push_back(path);
+}
+
+}  // namespace tubetwin
