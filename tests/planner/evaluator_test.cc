@@ -209,6 +209,29 @@ TEST_CASE("Scores depend neither on threads nor on order nor on what ran before"
   CHECK(two.threads == 2);
 }
 
+TEST_CASE("Samples that are asked for one by one are those asked for together", "[physics]") {
+  const TubeScene scene = Covered();
+  EvaluationRequest request = Request({Motion(1, "up", kUp), Motion(2, "up", kUp)}, scene);
+  request.full = true;
+  request.samples = 3;
+  request.first_sample = 1;
+  const EvaluationResult together = Evaluate(scene, request);
+  request.samples = 1;
+  std::vector<double> extra(2, 0.0);
+  for (int k = 0; k < 3; ++k) {
+    request.first_sample = 1 + k;
+    const EvaluationResult one = Evaluate(scene, request);
+    for (std::size_t c = 0; c < extra.size(); ++c) {
+      CHECK(one.candidates[c].samples == std::vector{together.candidates[c].samples.at(k)});
+      extra[c] += one.candidates[c].extra_probability / 3.0;
+    }
+  }
+  for (std::size_t c = 0; c < extra.size(); ++c) {
+    CHECK(together.candidates[c].extra_probability == Approx(extra[c]));
+  }
+  CHECK(extra[0] != extra[1]);
+}
+
 TEST_CASE("scores.json has the promised fields", "[physics]") {
   const TubeScene scene = Covered();
   const Json json =
