@@ -277,7 +277,7 @@ class Trial {
                      [](const Offer& a, const Offer& b) { return a.own_m < b.own_m; });
     std::vector<Offer> out = {choice};
     const int room = std::min(options_.motions - 1, static_cast<int>(others.size()));
-    const int best = std::min(room, options_.motions / 2 - 1);
+    const int best = std::clamp(options_.motions / 2 - 1, 0, room);
     out.insert(out.end(), others.begin(), others.begin() + best);
     const int rest = static_cast<int>(others.size()) - best, spread = room - best;
     for (int k = 0; k < spread; ++k) {
