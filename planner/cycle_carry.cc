@@ -22,7 +22,8 @@ void Open(CycleContext& c) {
   open.opening_m = std::min(GripperSpec().stroke_m, 2 * c.setup.part.radius_m + kReleaseExtra_m);
   open.speed_m_s = c.setup.cycle.grip_speed_m_s;
   open.force_N = c.setup.cycle.grip_force_N;
-  MoveGripper(c.cell, open);
+  c.cell.carrying = false;
+  c.MoveFingers(open);
   c.mover.SetOpening(open.opening_m);
   c.cell.arm.SetPayload(0.0, Vector3::Zero());
 }
@@ -89,6 +90,30 @@ RigidTransform TiltStation(const CycleContext& c, const Vector3& axis_E,
     if (c.mover.TiltsFrom(turned, rotations_B)) return turned;
   }
   return straight;
+}
+
+/// Transfer to over the slot with an eye on the gripper, and the last weighing. Whether the tube is
+/// still there.
+HeldOutcome Carry(CycleContext& c, const RigidTransform& X_BE, int slot) {
+  const CycleConfig& speeds = c.setup.cycle;
+  c.cell.carrying = true;
+  try {
+    const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
+    c.observer.OnStep("carrying to slot " + std::to_string(slot + 1));
+    c.mover.Transfer(X_BE, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
+  } catch (const MoveFailure& failure) {
+    if (failure.status != WaitOutcome::Status::kObjectLost) throw;
+    c.cell.carrying = false;
+    c.mover.Resync();
+    c.report.reason = failure.what();
+    if (c.Weigh(0.3).outcome == HeldOutcome::kNone) return HeldOutcome::kNone;
+    // Opening on the word of one of the two could drop a tube.
+    throw MoveFailure(MoveFailure::Kind::kFault,
+                      std::string(failure.what()) + ", but the wrist still weighs one");
+  }
+  const HeldOutcome held = c.Weigh(0.3).outcome;
+  if (held == HeldOutcome::kNone) c.report.reason = "nothing hangs in the fingers over the tray";
+  return held;
 }
 
 }  // namespace
@@ -164,15 +189,7 @@ AttemptOutcome Place(CycleContext& c, const Polyline& line_E) {
   const PlacementPose& pose = *found;
   RigidTransform X_BE = pose.X_BE;
   X_BE.translation().z() += kAbovePlace_m;
-  {
-    const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
-    c.observer.OnStep("carrying to slot " + std::to_string(pose.slot + 1));
-    c.mover.Transfer(X_BE, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
-  }
-  if (c.Weigh(0.3).outcome == HeldOutcome::kNone) {
-    c.report.reason = "nothing hangs in the fingers over the tray";
-    return AttemptOutcome::kDropped;
-  }
+  if (Carry(c, X_BE, pose.slot) == HeldOutcome::kNone) return AttemptOutcome::kDropped;
   const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
   c.observer.OnStep("laying down");
   X_BE.translation().z() = pose.X_BE.translation().z() + kGuardedPlace_m;

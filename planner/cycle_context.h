@@ -40,11 +40,30 @@ struct CycleContext {
     TimeNs began_;
   };
 
+  /// Mean wrench of the weighing window. Throws MoveFailure when it cannot be believed.
+  Wrench MeanWrench() {
+    const WrenchOutcome wrench = AverageWrench(cell, setup.cycle.weigh_window_s);
+    if (wrench.outcome.status != WaitOutcome::Status::kDone) {
+      throw MoveFailure(wrench.outcome, "weighing");
+    }
+    return wrench.mean_K;
+  }
+
+  /// Moves the fingers. Those that still move at the end of the wait are judged by their opening
+  /// and by weight. Throws MoveFailure on a gripper's fault.
+  GripperState MoveFingers(const GripperCommand& command) {
+    const GripperOutcome fingers = MoveGripper(cell, command);
+    if (fingers.outcome.status == WaitOutcome::Status::kGripperFault) {
+      throw MoveFailure(fingers.outcome, "fingers");
+    }
+    return fingers.state;
+  }
+
   /// Waits, averages and compares with the reference. Tool vertical and at rest.
   Detection Weigh(double wait_s) {
     const Timed timed(*this, &AttemptReport::SimTime::weigh);
     Wait(cell, wait_s);
-    const Wrench now_K = AverageWrench(cell, setup.cycle.weigh_window_s);
+    const Wrench now_K = MeanWrench();
     Detection out = DetectHeld(reference_K, now_K, setup.part.mass_kg,
                                setup.cycle.tolerance_share * setup.part.mass_kg * kGravity);
     out.at_s = Seconds(cell.clock.Now() - attempt_began);
@@ -86,7 +105,11 @@ HeldOutcome Resolve(CycleContext& context, const Vector3& load_torque_K);
 void PutBack(CycleContext& context);
 
 /// Lays the held tube into the next slot. `line_E`: its centerline relative to E. The outcome is
-/// kPlaced, or kDropped when nothing hangs in the fingers over the tray.
+/// kPlaced, or kDropped when the tube was lost on the way.
 AttemptOutcome Place(CycleContext& context, const Polyline& line_E);
+
+/// After a stop or fault of the arm: asks the operator, if there is one, and goes on only on their
+/// word: ready again, straight up, what is held back into the bin.
+Acknowledgement GoOnAfterStop(CycleContext& context, const MoveFailure& failure);
 
 }  // namespace tubetwin

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "hw_bridge/base/error.h"
 #include "planner/cycle_context.h"
 
 namespace tubetwin {
@@ -9,6 +10,17 @@ namespace {
 constexpr double kTouchMargin_m = 0.010;
 /// Half field of view of the scanner as tangents, with room for what a tube may have moved.
 constexpr double kFieldX = 0.5 * 2064.0 / 2534.0 + 0.12, kFieldY = 0.5 * 1544.0 / 2534.0 + 0.12;
+
+/// A scan that fails is asked for once more.
+OrganizedCloud ScanOrAgain(CycleContext& c) {
+  try {
+    return Scan(c.cell);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kDevice) throw;
+    c.observer.OnStep(std::string("scanning again: ") + error.what());
+  }
+  return Scan(c.cell);
+}
 
 }  // namespace
 
@@ -84,7 +96,7 @@ const TubeScene& Looker::Look() {
       first = false;
     }
     const CycleContext::Timed timed(context_, &AttemptReport::SimTime::scan);
-    views_[v] = Scan(cell);
+    views_[v] = ScanOrAgain(context_);
   }
   marked_.assign(poses_BS_.size(), false);
   const double began = ComputeClock_s();

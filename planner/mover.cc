@@ -44,7 +44,7 @@ WaitOutcome Mover::Run(const MotionResult& planned, const char* what) {
   const CheckedTrajectory& trajectory = std::get<CheckedTrajectory>(planned);
   const WaitOutcome outcome = RunTrajectory(cell_, trajectory);
   if (outcome.status != WaitOutcome::Status::kDone) {
-    throw MoveFailure(MoveFailure::Kind::kFault, std::string(what) + ": " + outcome.reason);
+    throw MoveFailure(outcome, what);
   }
   q_ = EndOf(trajectory);
   Wait(cell_, kSettle_s);
@@ -96,7 +96,7 @@ WaitOutcome Mover::GuardedLine(const RigidTransform& X_BE, double speed_m_s, dou
     Wait(cell_, kSettle_s);
     q_ = cell_.arm.State().q;
   } else {
-    throw MoveFailure(MoveFailure::Kind::kFault, "guarded line: " + outcome.reason);
+    throw MoveFailure(outcome, "guarded line");
   }
   return outcome;
 }

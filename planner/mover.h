@@ -15,7 +15,13 @@ namespace tubetwin {
 class MoveFailure : public std::runtime_error {
  public:
   enum class Kind { kRejected, kFault } kind;
+  /// Of a fault, what the cell said; kRejected for a motion that could not be planned.
+  WaitOutcome::Status status = WaitOutcome::Status::kRejected;
   MoveFailure(Kind k, const std::string& what) : std::runtime_error(what), kind(k) {}
+  MoveFailure(const WaitOutcome& outcome, const std::string& what)
+      : std::runtime_error(what + ": " + outcome.reason),
+        kind(Kind::kFault),
+        status(outcome.status) {}
 };
 
 /// Clearance of the fingers to the bin on the way to and from a grasp: pads end 2 mm over the
@@ -46,6 +52,9 @@ class Mover {
             double acceleration_m_s2);
   /// About E, which stays where it is. Rotation vector in B, radians.
   void Tilt(const Vector3& rotation_B, double speed_rad_s);
+
+  /// Goes on from where the arm stands now, wherever that is.
+  void Resync() { q_ = cell_.arm.State().q; }
 
   /// Goes on as a mover whose last motion ended at `q`.
   void Resume(const JointVector& q, double opening_m) {

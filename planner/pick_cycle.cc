@@ -113,7 +113,7 @@ class Round {
     {
       const CycleContext::Timed weighing(c_, &AttemptReport::SimTime::settle);
       Wait(c_.cell, 0.3);
-      c_.reference_K = AverageWrench(c_.cell, speeds.weigh_window_s);
+      c_.reference_K = c_.MeanWrench();
       c_.observer.OnReference(c_.reference_K);
     }
     RigidTransform near = X_BG;
@@ -282,7 +282,7 @@ class Round {
     command.opening_m = close ? 0.0 : opening_m;
     command.speed_m_s = c_.setup.cycle.grip_speed_m_s;
     command.force_N = c_.setup.cycle.grip_force_N;
-    const GripperState state = MoveGripper(c_.cell, command);
+    const GripperState state = c_.MoveFingers(command);
     c_.mover.SetOpening(close ? state.opening_m : opening_m);
     return state;
   }
@@ -354,10 +354,14 @@ RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver&
     } catch (const EndAtSeveral&) {
       return round.EndOfRound(RoundEnd::kStored, "several tubes hang in the fingers");
     } catch (const MoveFailure& failure) {
-      if (failure.kind == MoveFailure::Kind::kFault || !round.Recover(failure.what())) {
-        round.EndAttempt(AttemptOutcome::kFault, failure.what());
-        return round.EndOfRound(RoundEnd::kFault, failure.what());
-      }
+      if (failure.kind == MoveFailure::Kind::kRejected && round.Recover(failure.what())) continue;
+      round.EndAttempt(AttemptOutcome::kFault, failure.what());
+      if (GoOnAfterStop(round.context(), failure) == Acknowledgement::kGoOn) continue;
+      return round.EndOfRound(RoundEnd::kFault, failure.what());
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kDevice) throw;
+      round.EndAttempt(AttemptOutcome::kFault, error.what());
+      return round.EndOfRound(RoundEnd::kFault, error.what());
     }
   }
 }

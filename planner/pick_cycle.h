@@ -68,6 +68,9 @@ class CycleObserver {
   virtual void OnAttemptEnd(const AttemptReport& /*report*/) {}
 };
 
+/// What an operator says to a stop.
+enum class Acknowledgement { kGoOn, kEnd };
+
 /// Everything the cycle needs besides the cell.
 struct PickCycleSetup {
   Part part;
@@ -80,6 +83,9 @@ struct PickCycleSetup {
   EvaluateFunction evaluate;
   Parallelism parallelism;
   std::function<bool()> stop_requested;  ///< Asked between attempts; may be empty.
+  /// Asked after a protective or emergency stop or an alarm, with what happened: only kGoOn, a
+  /// person's word that the cause is gone, lets the cycle go on. Empty: nobody is there.
+  std::function<Acknowledgement(const std::string&)> acknowledge;
 };
 
 /// Empties the bin: scan, model, plan, approach, grasp, weigh, resolve, place, until the scan shows

@@ -7,14 +7,17 @@
 #include <string>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/cell/watch.h"
 
 namespace tubetwin {
 namespace {
 
 constexpr double kScanTimeout_s = 30.0;
 constexpr double kGripperTimeout_s = 5.0;
-constexpr int kMeanSamples = 5;     ///< 5 ms at the control period.
-constexpr int kContactSamples = 3;  ///< In a row over the limit.
+constexpr double kStopTimeout_s = 2.0;      ///< For a stopped arm to come to rest.
+constexpr double kRecoverTimeout_s = 12.0;  ///< Servos on, job started.
+constexpr int kMeanSamples = 5;             ///< 5 ms at the control period.
+constexpr int kContactSamples = 3;          ///< In a row over the limit.
 /// Below this speed of E the direction of motion is taken over from the sample before.
 constexpr double kLeastSpeed_m_s = 1e-4;
 
@@ -36,45 +39,94 @@ class ForceMean {
   Vector3 sum_N_ = Vector3::Zero();
 };
 
+WaitOutcome::Status StatusOf(ArmMode mode) {
+  switch (mode) {
+    case ArmMode::kDisconnected:
+      return WaitOutcome::Status::kLinkLost;
+    case ArmMode::kProtectiveStop:
+      return WaitOutcome::Status::kProtectiveStop;
+    case ArmMode::kEmergencyStop:
+      return WaitOutcome::Status::kEmergencyStop;
+    default:
+      return WaitOutcome::Status::kFault;
+  }
+}
+
 /// The state at the end of a motion as an outcome; `stopped` is what a stop short of the end means.
 WaitOutcome OutcomeOf(const ArmState& state, WaitOutcome::Status stopped) {
   WaitOutcome outcome;
   outcome.progress_s = state.progress_s;
   if (state.mode == ArmMode::kReady && state.done) return outcome;
+  const std::string told = state.fault.empty() ? "" : ": " + state.fault;
   if (state.mode == ArmMode::kReady) {
     outcome.status = stopped;
     outcome.reason = "stopped at " + std::to_string(state.progress_s) + " s of " +
-                     std::to_string(state.planned_s) + " s";
+                     std::to_string(state.planned_s) + " s" + told;
     return outcome;
   }
-  outcome.status = WaitOutcome::Status::kFault;
-  outcome.reason = std::string("arm is in ") + ToString(state.mode) +
-                   (state.fault.empty() ? "" : ": " + state.fault);
+  outcome.status = StatusOf(state.mode);
+  outcome.reason = std::string("arm is in ") + ToString(state.mode) + told;
   return outcome;
 }
 
+bool Moves(const ArmState& state) {
+  return state.mode == ArmMode::kMoving || state.mode == ArmMode::kHolding;
+}
+
+/// Ends a motion for `trouble` and lets the arm come to rest, if it still says where it is.
+WaitOutcome EndMotion(Cell& cell, WaitOutcome trouble) {
+  const bool lost = trouble.status == WaitOutcome::Status::kLinkLost;
+  const bool late = trouble.status == WaitOutcome::Status::kTimedOut;
+  cell.arm.Stop(lost || late ? StopKind::kFast : StopKind::kOnPath);
+  const TimeNs end = cell.clock.Now() + FromSeconds(kStopTimeout_s);
+  while (!lost && Moves(cell.arm.State()) && cell.clock.Now() < end) {
+    cell.clock.AdvanceTo(cell.clock.Now() + kControlPeriod);
+  }
+  return trouble;
+}
+
+std::optional<WaitOutcome> Late(const Cell& cell, const ArmState& state, TimeNs waited,
+                                TimeNs held) {
+  const bool late = Seconds(waited) > 1.5 * state.planned_s + 2.0;
+  if (!late && Seconds(held) <= cell.safety.hold_s) return std::nullopt;
+  return WaitOutcome{WaitOutcome::Status::kTimedOut,
+                     "still " + std::string(ToString(state.mode)) + " after " +
+                         std::to_string(Seconds(waited + held)) + " s, planned " +
+                         std::to_string(state.planned_s) + " s",
+                     state.progress_s};
+}
+
 /// Waits until the arm no longer moves, calling `each_sample` (may be empty) after every control
-/// period in which it still does.
-WaitOutcome WaitWhileMoving(Cell& cell, const std::function<void(const ArmState&)>& each_sample) {
-  TimeNs waited{0};
+/// period in which it still does; what that returns ends the motion, as does what is watched.
+WaitOutcome WaitWhileMoving(
+    Cell& cell, const JointTrajectory* path,
+    const std::function<std::optional<WaitOutcome>(const ArmState&)>& each_sample) {
+  TimeNs waited{0}, held{0};
   for (;;) {
     const ArmState state = cell.arm.State();
-    const bool holding = state.mode == ArmMode::kHolding;
-    if (state.mode != ArmMode::kMoving && !holding) {
+    if (!Moves(state)) {
+      if (state.mode == ArmMode::kDisconnected) cell.arm.Stop(StopKind::kFast);
       return OutcomeOf(state, WaitOutcome::Status::kStopped);
     }
-    if (Seconds(waited) > 1.5 * state.planned_s + 2.0) {
-      return {WaitOutcome::Status::kTimedOut,
-              "still " + std::string(ToString(state.mode)) + " after " +
-                  std::to_string(Seconds(waited)) + " s, planned " +
-                  std::to_string(state.planned_s) + " s",
-              state.progress_s};
-    }
-    if (each_sample) each_sample(state);
-    cell.clock.AdvanceTo(cell.clock.Now() + kControlPeriod);
+    std::optional<WaitOutcome> trouble = Late(cell, state, waited, held);
+    if (!trouble) trouble = MotionTrouble(cell, state, path);
+    if (!trouble && each_sample) trouble = each_sample(state);
+    if (trouble) return EndMotion(cell, *trouble);
+    const TimeNs before = cell.clock.Now();
+    cell.clock.AdvanceTo(before + kControlPeriod);
     // A controller that holds the arm back on purpose is not late.
-    if (!holding) waited += kControlPeriod;
+    (state.mode == ArmMode::kHolding ? held : waited) += cell.clock.Now() - before;
   }
+}
+
+/// Starts what may be started; the reason why not otherwise.
+std::optional<WaitOutcome> StartTrajectory(Cell& cell, const CheckedTrajectory& trajectory) {
+  if (auto refused = RefuseStart(cell, trajectory)) return refused;
+  const CommandResult started = cell.arm.Start(trajectory);
+  if (started.accepted()) return std::nullopt;
+  const ArmMode mode = cell.arm.State().mode;
+  const bool ready = mode == ArmMode::kReady || mode == ArmMode::kMoving;
+  return WaitOutcome{ready ? WaitOutcome::Status::kRejected : StatusOf(mode), started.reason, 0.0};
 }
 
 /// Unit direction of E's motion in K at `time_s` of the trajectory; `previous` where it is at rest.
@@ -90,25 +142,63 @@ Vector3 MotionDirection_K(const Cell& cell, const JointTrajectory& trajectory, d
 
 }  // namespace
 
-WaitOutcome WaitForArm(Cell& cell) { return WaitWhileMoving(cell, {}); }
-
-WaitOutcome RunTrajectory(Cell& cell, const CheckedTrajectory& trajectory) {
-  const CommandResult started = cell.arm.Start(trajectory);
-  if (!started.accepted()) return {WaitOutcome::Status::kFault, started.reason, 0.0};
-  return WaitForArm(cell);
+const char* ToString(WaitOutcome::Status status) {
+  switch (status) {
+    case WaitOutcome::Status::kDone:
+      return "done";
+    case WaitOutcome::Status::kContact:
+      return "contact";
+    case WaitOutcome::Status::kStopped:
+      return "stopped";
+    case WaitOutcome::Status::kTimedOut:
+      return "timed out";
+    case WaitOutcome::Status::kRejected:
+      return "rejected";
+    case WaitOutcome::Status::kDeviated:
+      return "deviated";
+    case WaitOutcome::Status::kProtectiveStop:
+      return "protective stop";
+    case WaitOutcome::Status::kEmergencyStop:
+      return "emergency stop";
+    case WaitOutcome::Status::kFault:
+      return "fault";
+    case WaitOutcome::Status::kLinkLost:
+      return "link lost";
+    case WaitOutcome::Status::kSensorFault:
+      return "sensor fault";
+    case WaitOutcome::Status::kGripperFault:
+      return "gripper fault";
+    case WaitOutcome::Status::kObjectLost:
+      return "object lost";
+  }
+  return "unknown";
 }
 
-WaitOutcome RunGuarded(Cell& cell, const CheckedTrajectory& trajectory, double force_limit_N) {
+WaitOutcome WaitForArm(Cell& cell) { return WaitWhileMoving(cell, nullptr, {}); }
+
+WaitOutcome RunTrajectory(Cell& cell, const CheckedTrajectory& planned) {
+  const CheckedTrajectory trajectory = WithinSpeed(cell, planned);
+  if (auto refused = StartTrajectory(cell, trajectory)) return *refused;
+  return WaitWhileMoving(cell, &trajectory.trajectory(), {});
+}
+
+WaitOutcome RunGuarded(Cell& cell, const CheckedTrajectory& planned, double force_limit_N) {
   TT_CHECK(force_limit_N > 0.0);
-  const Vector3 bias_N = AverageWrench(cell, kMeanSamples * Seconds(kControlPeriod)).force_N;
-  const CommandResult started = cell.arm.Start(trajectory);
-  if (!started.accepted()) return {WaitOutcome::Status::kFault, started.reason, 0.0};
+  const CheckedTrajectory trajectory = WithinSpeed(cell, planned);
+  const WrenchOutcome bias = AverageWrench(cell, kMeanSamples * Seconds(kControlPeriod));
+  if (bias.outcome.status != WaitOutcome::Status::kDone) return bias.outcome;
+  if (auto refused = StartTrajectory(cell, trajectory)) return *refused;
   ForceMean mean;
   Vector3 direction_K = Vector3::Zero();
   int over = 0;
+  TimeNs newest{-1};
   std::optional<double> contact_N;
-  WaitOutcome outcome = WaitWhileMoving(cell, [&](const ArmState& state) {
-    mean.Add(cell.wrist.Read().wrench_K.force_N - bias_N);
+  const auto each_sample = [&](const ArmState& state) -> std::optional<WaitOutcome> {
+    const WrenchSample sample = cell.wrist.Read();
+    if (auto trouble = WristTrouble(cell, sample)) return trouble;
+    if (sample.time == newest) return std::nullopt;
+    newest = sample.time;
+    mean.Add(sample.wrench_K.force_N - bias.mean_K.force_N);
     direction_K = MotionDirection_K(cell, trajectory.trajectory(), state.progress_s, direction_K);
     const double along_N = mean.mean_N().dot(direction_K);
     over = std::abs(along_N) > force_limit_N ? over + 1 : 0;
@@ -116,7 +206,9 @@ WaitOutcome RunGuarded(Cell& cell, const CheckedTrajectory& trajectory, double f
       contact_N = along_N;
       cell.arm.Stop(StopKind::kOnPath);
     }
-  });
+    return std::nullopt;
+  };
+  WaitOutcome outcome = WaitWhileMoving(cell, &trajectory.trajectory(), each_sample);
   const bool ended = outcome.status == WaitOutcome::Status::kDone ||
                      outcome.status == WaitOutcome::Status::kStopped;
   if (contact_N && ended) {
@@ -127,28 +219,62 @@ WaitOutcome RunGuarded(Cell& cell, const CheckedTrajectory& trajectory, double f
   return outcome;
 }
 
-GripperState MoveGripper(Cell& cell, const GripperCommand& command) {
+GripperOutcome MoveGripper(Cell& cell, const GripperCommand& command) {
+  TT_CHECK(std::isfinite(command.opening_m) && command.opening_m >= 0.0);
+  TT_CHECK(command.speed_m_s > 0.0 && command.force_N > 0.0);
+  GripperOutcome result;
+  result.state = cell.gripper.State();
+  if (auto trouble = GripperTrouble(cell, result.state)) {
+    result.outcome = *trouble;
+    return result;
+  }
   cell.gripper.Command(command);
   const TimeNs end = cell.clock.Now() + FromSeconds(kGripperTimeout_s);
-  GripperState state = cell.gripper.State();
-  while (state.object == GripperObject::kMoving && cell.clock.Now() < end) {
+  result.state = cell.gripper.State();
+  while (result.state.object == GripperObject::kMoving) {
+    if (auto trouble = GripperTrouble(cell, result.state)) {
+      result.outcome = *trouble;
+      return result;
+    }
+    if (cell.clock.Now() >= end) {
+      result.outcome = {WaitOutcome::Status::kTimedOut, "gripper: still moving after 5 s", 0.0};
+      return result;
+    }
     cell.clock.AdvanceTo(cell.clock.Now() + kControlPeriod);
-    state = cell.gripper.State();
+    result.state = cell.gripper.State();
   }
-  return state;
+  if (auto trouble = GripperTrouble(cell, result.state)) result.outcome = *trouble;
+  return result;
 }
 
-Wrench AverageWrench(Cell& cell, double duration_s) {
+WrenchOutcome AverageWrench(Cell& cell, double duration_s) {
   TT_CHECK(duration_s >= Seconds(kControlPeriod));
   const TimeNs end = cell.clock.Now() + FromSeconds(duration_s);
+  WrenchOutcome result;
   Wrench sum;
-  int count = 0;
+  TimeNs newest{-1};
+  int count = 0, saturated = 0;
   while (cell.clock.Now() < end) {
     cell.clock.AdvanceTo(cell.clock.Now() + kControlPeriod);
-    sum = sum + cell.wrist.Read().wrench_K;
+    const WrenchSample sample = cell.wrist.Read();
+    if (auto trouble = WristTrouble(cell, sample)) {
+      result.outcome = *trouble;
+      return result;
+    }
+    if (sample.time == newest) continue;
+    newest = sample.time;
+    sum = sum + sample.wrench_K;
+    saturated += sample.saturated ? 1 : 0;
     ++count;
   }
-  return sum * (1.0 / count);
+  result.mean_K = sum * (1.0 / count);
+  if (saturated > 0) {
+    result.outcome = {WaitOutcome::Status::kSensorFault,
+                      "wrist: " + std::to_string(saturated) + " of " + std::to_string(count) +
+                          " samples are saturated",
+                      0.0};
+  }
+  return result;
 }
 
 void Wait(Cell& cell, double duration_s) {
@@ -171,6 +297,19 @@ OrganizedCloud Scan(Cell& cell) {
     throw Error(ErrorKind::kDevice, "scanner: scan failed: " + cell.scanner.FailureReason());
   }
   return cell.scanner.Take();
+}
+
+WaitOutcome RecoverArm(Cell& cell) {
+  const CommandResult asked = cell.arm.Recover();
+  if (!asked.accepted()) return {WaitOutcome::Status::kRejected, asked.reason, 0.0};
+  const TimeNs end = cell.clock.Now() + FromSeconds(kRecoverTimeout_s);
+  ArmState state = cell.arm.State();
+  while (state.mode != ArmMode::kReady && cell.clock.Now() < end) {
+    cell.clock.AdvanceTo(cell.clock.Now() + kControlPeriod);
+    state = cell.arm.State();
+  }
+  if (state.mode == ArmMode::kReady) return {};
+  return OutcomeOf(state, WaitOutcome::Status::kStopped);
 }
 
 }  // namespace tubetwin

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "hw_bridge/base/error.h"
+
 namespace tubetwin {
 namespace {
 
@@ -111,6 +113,17 @@ std::optional<TrajectoryRejection> CheckForm(const std::vector<TrajectoryPoint>&
 }
 
 }  // namespace
+
+CheckedTrajectory CheckedTrajectory::Stretched(double factor) const {
+  TT_CHECK(factor >= 1.0);
+  JointTrajectory longer = trajectory_;
+  for (TrajectoryPoint& point : longer.points) {
+    point.time_s *= factor;
+    point.qd /= factor;
+    point.qdd /= factor * factor;
+  }
+  return CheckedTrajectory(std::move(longer));
+}
 
 std::variant<CheckedTrajectory, TrajectoryRejection> CheckTrajectory(const ArmModel& arm,
                                                                      JointTrajectory trajectory) {

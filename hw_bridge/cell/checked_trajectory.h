@@ -22,6 +22,8 @@ class CheckedTrajectory {
  public:
   const JointTrajectory& trajectory() const { return trajectory_; }
   double duration_s() const { return trajectory_.duration_s(); }
+  /// The same path, `factor` times as long: within the same limits. Precondition: factor >= 1.
+  CheckedTrajectory Stretched(double factor) const;
 
  private:
   friend std::variant<CheckedTrajectory, TrajectoryRejection> CheckTrajectory(const ArmModel&,

@@ -72,6 +72,12 @@ class Arm {
   virtual void Stop(StopKind kind) = 0;
   /// What the fingers carry besides the empty tool: for feed-forward. p_FC: centre of mass.
   virtual void SetPayload(double mass_kg, const Vector3& p_FC) = 0;
+  /// Makes an arm ready again that stands in a stop or fault whose cause is gone. Only when a
+  /// person has said so, and never by the device itself. Moves nothing; State() tells when it is
+  /// ready.
+  [[nodiscard]] virtual CommandResult Recover() {
+    return {CommandResult::Status::kRejected, "this arm cannot be made ready from here"};
+  }
 };
 
 struct GripperCommand {

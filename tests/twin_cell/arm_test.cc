@@ -93,7 +93,7 @@ TEST_CASE("a trajectory that does not begin where the arm stands moves nothing")
   Wait(bench.cell(), 0.2);
   // Settling after the last move is below the encoder's ten counts.
   CHECK((bench.impl().arm.TruePosition() - before).cwiseAbs().maxCoeff() < 1e-4);
-  CHECK(RunTrajectory(bench.cell(), line).status == WaitOutcome::Status::kFault);
+  CHECK(RunTrajectory(bench.cell(), line).status == WaitOutcome::Status::kRejected);
 }
 
 TEST_CASE("a second trajectory is refused while one runs, a fitting continuation is taken") {

@@ -67,7 +67,7 @@ GripperState Bench::GraspAt(const Vector3& p_N, double force_N) {
   const Vector3 p_B = cell().bin.X_BN * p_N;
   MoveLine(Down(p_B + Vector3(0, 0, 0.15)), options);
   MoveLine(Down(p_B + Vector3(0, 0, GraspHeightOverAxis(p_N.z()))), options);
-  return MoveGripper(cell(), {0.0, 0.10, force_N});
+  return MoveGripper(cell(), {0.0, 0.10, force_N}).state;
 }
 
 }  // namespace tubetwin::test

@@ -30,10 +30,10 @@ double PadForce(Bench& bench, const char* pad) {
 
 TEST_CASE("closing on nothing ends at the requested position with its opening") {
   Bench bench(FarTube());
-  const GripperState closed = MoveGripper(bench.cell(), {0.0, 0.15, 60.0});
+  const GripperState closed = MoveGripper(bench.cell(), {0.0, 0.15, 60.0}).state;
   CHECK(closed.object == GripperObject::kAtPosition);
   CHECK(closed.opening_m <= kCount_m);
-  const GripperState half = MoveGripper(bench.cell(), {0.040, 0.15, 60.0});
+  const GripperState half = MoveGripper(bench.cell(), {0.040, 0.15, 60.0}).state;
   CHECK(half.object == GripperObject::kAtPosition);
   // The servo is soft where the tips' weight pulls on it: one count, and one of rounding.
   CHECK(half.opening_m == Approx(0.040).margin(2 * kCount_m));

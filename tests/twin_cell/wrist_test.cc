@@ -32,7 +32,7 @@ TEST_CASE("a hanging mass reads as its weight along z out of the tool") {
   const Pile pile = OneTube("pvc_a", Vector3(0, 0, 0.0125));
   Bench bench(pile, NominalOptions(pile, true));
   Wait(bench.cell(), 0.5);
-  const Wrench empty = AverageWrench(bench.cell(), 0.2);
+  const Wrench empty = AverageWrench(bench.cell(), 0.2).mean_K;
   const double tool_N = (kGripperMass_kg + kCouplingMass_kg) * kGravity;
   CHECK(empty.force_N.z() == Approx(tool_N).margin(kHalfCount_N));
   CHECK(std::abs(empty.force_N.x()) < 0.02);
@@ -47,11 +47,11 @@ TEST_CASE("a held tube adds its weight and the torque of its centre of mass") {
   RigidTransform X_BE = bench.Down(pile.bin.X_BN * Vector3(0, 0, 0.4));
   bench.MoveLine(X_BE);
   Wait(bench.cell(), 0.5);
-  const Wrench empty = AverageWrench(bench.cell(), 0.2);
+  const Wrench empty = AverageWrench(bench.cell(), 0.2).mean_K;
   REQUIRE(bench.GraspAt(Vector3(0, 0, radius_m)).object == GripperObject::kContactClosing);
   bench.MoveLine(X_BE);
   Wait(bench.cell(), 1.0);
-  const Wrench load = AverageWrench(bench.cell(), 0.2) - empty;
+  const Wrench load = AverageWrench(bench.cell(), 0.2).mean_K - empty;
   const double weight_N = pile.part.mass_kg * kGravity;
   CHECK(load.force_N.z() == Approx(weight_N).margin(2 * kHalfCount_N));
   // Torque about K's origin: p_KC x weight; all in K, whose axes E shares.

@@ -145,6 +145,16 @@ void TwinArm::SetPayload(double mass_kg, const Vector3& p_FC) {
   p_FPayload_ = p_FC;
 }
 
+CommandResult TwinArm::Recover() {
+  if (mode_ == ArmMode::kMoving) {
+    return {CommandResult::Status::kRejected, "the arm is moving"};
+  }
+  mode_ = ArmMode::kReady;
+  fault_.clear();
+  done_ = true;
+  return {};
+}
+
 Json TwinArm::StoredState() const {
   TT_CHECK(mode_ == ArmMode::kReady);
   return Json{{"q_reference", std::vector<double>(reference_.q.begin(), reference_.q.end())},

@@ -23,6 +23,7 @@ class TwinArm : public Arm {
   CommandResult Append(const CheckedTrajectory& continuation) override;
   void Stop(StopKind kind) override;
   void SetPayload(double mass_kg, const Vector3& p_FC) override;
+  CommandResult Recover() override;
 
   /// Sets the motors' torques for the coming step. Call between mj_step1 and mj_step2.
   void Control();

@@ -23,7 +23,7 @@ TwinCell::Impl::Impl(const Pile& pile, const TwinCellOptions& options)
               {options.layout, pile.bin, options.physics, options.scan, options.parallelism},
               RandomStream(options.seed, options.round, "scan")),
       clock(*this),
-      cell{clock, arm, gripper, wrist, scanner, Hc10(), options.layout, pile.bin},
+      cell{clock, arm, gripper, wrist, scanner, Hc10(), options.layout, pile.bin, {}},
       start_pile(pile) {
   // The first sample of the wrist, with the arm already held by its motors.
   arm.Control();

@@ -1,0 +1,194 @@
+// What ends a motion, a grip and a weighing on any cell, and that nothing starts again by itself.
+
+#include "tests/support/catch.h"
+#include "tests/support/fake_cell.h"
+
+namespace tubetwin {
+namespace {
+
+using test::FakeCell;
+using Status = WaitOutcome::Status;
+
+/// Calls `fault` once `at_s` has come.
+void At(FakeCell& fake, double at_s, const std::function<void()>& fault) {
+  fake.clock.each_period = [&fake, at_s, fault, done = false]() mutable {
+    if (done || fake.clock.Now() < FromSeconds(at_s)) return;
+    done = true;
+    fault();
+  };
+}
+
+void CheckStopped(FakeCell& fake, const WaitOutcome& outcome, Status status,
+                  const std::string& says, double within_s) {
+  INFO(outcome.reason);
+  CHECK(ToString(outcome.status) == std::string(ToString(status)));
+  CHECK_THAT(outcome.reason, Catch::Contains(says));
+  CHECK(fake.arm.stopped == 1);
+  CHECK(fake.arm.started == 1);
+  CHECK(fake.gripper.commands == 0);
+  CHECK(Seconds(fake.clock.Now()) < 0.5 + within_s);
+}
+
+TEST_CASE("A motion that nothing disturbs is done, and nobody stops it", "[unit]") {
+  FakeCell fake;
+  CHECK(RunTrajectory(fake.cell, fake.Move(0.2, 1.0)).status == Status::kDone);
+  CHECK(fake.arm.stopped == 0);
+}
+
+TEST_CASE("An arm that falls silent while it moves is stopped fast: link lost", "[unit]") {
+  FakeCell fake;
+  At(fake, 0.5, [&] { fake.arm.silent = true; });
+  const WaitOutcome outcome = RunTrajectory(fake.cell, fake.Move(0.2, 3.0));
+  CheckStopped(fake, outcome, Status::kLinkLost, "s old while it moves", 0.16);
+  CHECK(fake.arm.last_stop == StopKind::kFast);
+}
+
+TEST_CASE("An arm that leaves its path is stopped, one that lags on it is not", "[unit]") {
+  FakeCell fake;
+  At(fake, 0.5, [&] { fake.arm.offset[3] = Radians(8.0); });
+  CheckStopped(fake, RunTrajectory(fake.cell, fake.Move(0.2, 3.0)), Status::kDeviated,
+               "degrees off the path, 3.00 allowed", 0.01);
+
+  // Everything 0.3 s late: far from where the progress says, but on the path.
+  FakeCell late;
+  late.cell.safety.deviation_deg = 0.2;
+  const CheckedTrajectory move = late.Move(0.8, 2.0);
+  late.clock.each_period = [&] {
+    const double t = Seconds(late.clock.Now());
+    late.arm.offset =
+        Sample(move.trajectory(), std::max(0.0, t - 0.3)).q - Sample(move.trajectory(), t).q;
+  };
+  CHECK(RunTrajectory(late.cell, move).status == Status::kDone);
+}
+
+TEST_CASE("A fault or silence of the gripper stops the arm", "[unit]") {
+  FakeCell fake;
+  At(fake, 0.5, [&] { fake.gripper.state.fault = 0x0E; });
+  CheckStopped(fake, RunTrajectory(fake.cell, fake.Move(0.2, 3.0)), Status::kGripperFault,
+               "fault 14", 0.01);
+  FakeCell silent;
+  At(silent, 0.5, [&] { silent.gripper.silent = true; });
+  CheckStopped(silent, RunTrajectory(silent.cell, silent.Move(0.2, 3.0)), Status::kGripperFault,
+               "gripper: newest state is", 0.51);
+}
+
+TEST_CASE("Fingers that close on nothing end a motion only while a tube is carried", "[unit]") {
+  for (const bool carrying : {false, true}) {
+    FakeCell fake;
+    fake.cell.carrying = carrying;
+    fake.gripper.state.object = GripperObject::kContactClosing;
+    fake.gripper.state.requested_m = 0.0;
+    At(fake, 0.5, [&] { fake.gripper.state.object = GripperObject::kAtPosition; });
+    const WaitOutcome outcome = RunTrajectory(fake.cell, fake.Move(0.2, 3.0));
+    if (carrying) {
+      CheckStopped(fake, outcome, Status::kObjectLost, "while a tube was carried", 0.01);
+    } else {
+      CHECK(outcome.status == Status::kDone);
+    }
+  }
+}
+
+TEST_CASE("A stop of the controller is the outcome, with its text, and nothing goes on", "[unit]") {
+  const std::pair<ArmMode, Status> cases[] = {{ArmMode::kProtectiveStop, Status::kProtectiveStop},
+                                              {ArmMode::kEmergencyStop, Status::kEmergencyStop},
+                                              {ArmMode::kFault, Status::kFault},
+                                              {ArmMode::kDisconnected, Status::kLinkLost}};
+  for (const auto& [mode, status] : cases) {
+    FakeCell fake;
+    At(fake, 0.5, [&fake, mode = mode] {
+      fake.arm.mode = mode;
+      fake.arm.fault = "told so";
+    });
+    const WaitOutcome outcome = RunTrajectory(fake.cell, fake.Move(0.2, 3.0));
+    CHECK(outcome.status == status);
+    CHECK_THAT(outcome.reason, Catch::Contains("told so"));
+    Wait(fake.cell, 1.0);
+    CHECK(fake.arm.started == 1);
+    CHECK(fake.arm.recovered == 0);
+    CHECK(fake.gripper.commands == 0);
+    CHECK(RunTrajectory(fake.cell, fake.Move(0.1, 1.0)).status == status);
+  }
+}
+
+TEST_CASE("A motion that does not end is stopped", "[unit]") {
+  FakeCell fake;
+  At(fake, 0.5, [&] { fake.arm.stuck = true; });
+  const WaitOutcome outcome = RunTrajectory(fake.cell, fake.Move(0.2, 2.0));
+  CheckStopped(fake, outcome, Status::kTimedOut, "planned 2.0", 5.0);
+}
+
+TEST_CASE("A guarded motion ends when the wrist is silent", "[unit]") {
+  FakeCell fake;
+  At(fake, 0.5, [&] { fake.wrist.silent = true; });
+  CheckStopped(fake, RunGuarded(fake.cell, fake.Move(0.1, 3.0), 8.0), Status::kSensorFault,
+               "wrist: newest wrench is", 0.06);
+}
+
+TEST_CASE("No trajectory is sent to an arm that is silent or stands elsewhere", "[unit]") {
+  FakeCell fake;
+  const CheckedTrajectory move = fake.Move(0.2, 2.0);
+  fake.arm.q[2] += Radians(0.3);
+  const WaitOutcome elsewhere = RunTrajectory(fake.cell, move);
+  CHECK(elsewhere.status == Status::kRejected);
+  CHECK_THAT(elsewhere.reason, Catch::Contains("joint 3 is 0.300 degrees"));
+  fake.arm.silent = true;
+  Wait(fake.cell, 0.2);
+  CHECK(RunTrajectory(fake.cell, fake.Move(0.2, 2.0)).status == Status::kLinkLost);
+  CHECK(fake.arm.started == 0);
+}
+
+TEST_CASE("A gripper with a fault gets no command", "[unit]") {
+  FakeCell fake;
+  fake.gripper.state.fault = 0x09;
+  CHECK(MoveGripper(fake.cell, {0.05, 0.1, 60.0}).outcome.status == Status::kGripperFault);
+  CHECK(fake.gripper.commands == 0);
+  fake.gripper.state.fault = 0x05;  // A command that came too early is no broken gripper.
+  CHECK(MoveGripper(fake.cell, {0.05, 0.1, 60.0}).outcome.status == Status::kDone);
+}
+
+TEST_CASE("A weighing with saturated or missing samples is not believed", "[unit]") {
+  FakeCell fake;
+  CHECK(AverageWrench(fake.cell, 0.2).outcome.status == Status::kDone);
+  fake.wrist.saturated = true;
+  CHECK_THAT(AverageWrench(fake.cell, 0.2).outcome.reason, Catch::Contains("are saturated"));
+  fake.wrist.saturated = false;
+  fake.wrist.silent = true;
+  CHECK(AverageWrench(fake.cell, 0.2).outcome.status == Status::kSensorFault);
+}
+
+TEST_CASE("A largest speed stretches fast trajectories and leaves slow ones alone", "[unit]") {
+  FakeCell fake;
+  fake.cell.safety.max_speed_m_s = 0.25;
+  const CheckedTrajectory fast = fake.Move(0.5, 1.0);
+  REQUIRE(RunTrajectory(fake.cell, fast).status == Status::kDone);
+  CHECK(fake.arm.last_planned_s > 2.0);
+  FakeCell slow;
+  slow.cell.safety.max_speed_m_s = 0.25;
+  REQUIRE(RunTrajectory(slow.cell, slow.Move(0.02, 2.0)).status == Status::kDone);
+  CHECK(slow.arm.last_planned_s == 2.0);
+}
+
+TEST_CASE("A stretched trajectory keeps its path and its limits", "[unit]") {
+  FakeCell fake;
+  const CheckedTrajectory move = fake.Move(0.5, 1.0);
+  const CheckedTrajectory longer = move.Stretched(3.0);
+  CHECK(longer.duration_s() == Approx(3.0));
+  CHECK(std::holds_alternative<CheckedTrajectory>(CheckTrajectory(Hc10(), longer.trajectory())));
+  for (double u = 0.0; u <= 1.0; u += 0.1) {
+    const JointVector off = Sample(move.trajectory(), u).q - Sample(longer.trajectory(), 3.0 * u).q;
+    CHECK(off.cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
+TEST_CASE("An arm is made ready only when asked to", "[unit]") {
+  FakeCell fake;
+  fake.arm.mode = ArmMode::kProtectiveStop;
+  Wait(fake.cell, 1.0);
+  CHECK(fake.arm.State().mode == ArmMode::kProtectiveStop);
+  CHECK(RecoverArm(fake.cell).status == Status::kDone);
+  CHECK(fake.arm.recovered == 1);
+  CHECK(fake.arm.started == 0);
+}
+
+}  // namespace
+}  // namespace tubetwin
