@@ -31,6 +31,10 @@ struct ArmStopped {
   TimeNs at{0};
   StopKind kind = StopKind::kOnPath;
 };
+struct ArmRecovered {
+  TimeNs at{0};
+  CommandResult answer;
+};
 struct PayloadSet {
   TimeNs at{0};
   double mass_kg = 0.0;
@@ -72,9 +76,10 @@ struct PipelineNote {
   std::string text;
 };
 
-using CellEvent = std::variant<TimeRead, TimeAdvanced, ArmRead, ArmStarted, ArmStopped, PayloadSet,
-                               GripperRead, GripperCommanded, WristRead, ScanTriggered,
-                               ScanStatusRead, ScanTaken, ScanFailureRead, PipelineNote>;
+using CellEvent =
+    std::variant<TimeRead, TimeAdvanced, ArmRead, ArmStarted, ArmStopped, PayloadSet, GripperRead,
+                 GripperCommanded, WristRead, ScanTriggered, ScanStatusRead, ScanTaken,
+                 ScanFailureRead, PipelineNote, ArmRecovered>;
 
 /// Reads only sample; everything else a replay compares in order, captions excepted.
 inline bool IsRead(const CellEvent& event) {

@@ -68,6 +68,12 @@ class RecordedArm : public Arm {
     tape_.Add(ArmStopped{tape_.now(), kind});
     inner_.Stop(kind);
   }
+  CommandResult Recover() override {
+    const TimeNs at = tape_.now();
+    const CommandResult answer = inner_.Recover();
+    tape_.Add(ArmRecovered{at, answer});
+    return answer;
+  }
   void SetPayload(double mass_kg, const Vector3& p_FC) override {
     tape_.Add(PayloadSet{tape_.now(), mass_kg, p_FC});
     inner_.SetPayload(mass_kg, p_FC);
@@ -143,7 +149,8 @@ struct CellRecorder::Impl {
         gripper(inner.gripper, tape),
         wrist(inner.wrist, tape),
         scanner(inner.scanner, tape),
-        cell{clock, arm, gripper, wrist, scanner, inner.arm_model, inner.layout, inner.bin} {}
+        cell{clock,           arm,          gripper,   wrist,        scanner,
+             inner.arm_model, inner.layout, inner.bin, inner.safety, false} {}
 
   Tape tape;
   RecordedClock clock;

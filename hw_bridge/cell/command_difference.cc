@@ -93,7 +93,7 @@ struct Fields {
   void operator()(const PipelineNote& e) const {
     out.Compare("text", e.text, Asked<PipelineNote>().text);
   }
-  // Triggering and taking have no content; reads are not compared.
+  // Triggering, taking and recovering have no content; reads are not compared.
   template <typename Other>
   void operator()(const Other&) const {}
 };
@@ -134,7 +134,7 @@ std::string KindOf(const CellEvent& event) {
   static constexpr std::array<const char*, std::variant_size_v<CellEvent>> kNames = {
       "time read",   "advance",       "arm state",       "arm start", "arm stop",
       "payload",     "gripper state", "gripper command", "wrench",    "scan trigger",
-      "scan status", "scan taken",    "scan failure",    "note"};
+      "scan status", "scan taken",    "scan failure",    "note",      "arm recover"};
   return kNames[event.index()];
 }
 

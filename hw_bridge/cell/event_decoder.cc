@@ -120,6 +120,8 @@ CellEvent ReadCommand(Tag tag, EventContext& c, ByteReader& in) {
     }
     case Tag::kArmStopped:
       return ArmStopped{at, ReadEnum(in, StopKind::kFast, "kind of stop")};
+    case Tag::kArmRecovered:
+      return ArmRecovered{at, ReadAnswer(in)};
     case Tag::kPayloadSet: {
       PayloadSet e{at, in.F64(), {}};
       for (int i = 0; i < 3; ++i) e.p_FC[i] = in.F64();

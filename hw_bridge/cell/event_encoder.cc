@@ -91,6 +91,10 @@ class Writer {
     BeginCommand(Tag::kArmStopped, e.at, c_, out_);
     out_.U8(static_cast<std::uint8_t>(e.kind));
   }
+  void operator()(const ArmRecovered& e) {
+    BeginCommand(Tag::kArmRecovered, e.at, c_, out_);
+    WriteAnswer(e.answer, out_);
+  }
   void operator()(const PayloadSet& e) {
     BeginCommand(Tag::kPayloadSet, e.at, c_, out_);
     out_.F64(e.mass_kg);

@@ -29,6 +29,7 @@ enum class Tag : std::uint8_t {
   kScanFailureRead = 15,
   kCaption = 16,
   kResult = 17,
+  kArmRecovered = 18,
 };
 
 // First byte of a device's state: what follows it.

@@ -176,6 +176,7 @@ class ReplayedArm : public Arm {
     return script_.Command(ArmStarted{script_.now, true, continuation.trajectory(), {}}).answer;
   }
   void Stop(StopKind kind) override { script_.Command(ArmStopped{script_.now, kind}); }
+  CommandResult Recover() override { return script_.Command(ArmRecovered{script_.now, {}}).answer; }
   void SetPayload(double mass_kg, const Vector3& p_FC) override {
     script_.Command(PayloadSet{script_.now, mass_kg, p_FC});
   }
@@ -244,7 +245,8 @@ struct ReplayCell::Impl {
              scanner,
              Hc10(),
              script.recording().header().layout,
-             script.recording().header().bin} {}
+             script.recording().header().bin,
+             {}} {}
 
   Script script;
   ReplayedClock clock;

@@ -118,6 +118,10 @@ class BitWriter {
     Time(e.at);
     out_.U8(static_cast<std::uint8_t>(e.kind));
   }
+  void operator()(const ArmRecovered& e) {
+    Time(e.at);
+    Answer(e.answer);
+  }
   void operator()(const PayloadSet& e) {
     Time(e.at);
     out_.F64(e.mass_kg);
@@ -221,7 +225,7 @@ OrganizedCloud RandomCloud(RandomStream& stream, int width, int height, bool cam
 }
 
 CellEvent RandomEvent(RandomStream& stream) {
-  switch (stream.Index(15)) {
+  switch (stream.Index(16)) {
     case 0:
       return TimeRead{AnyTime(stream)};
     case 1:
@@ -255,6 +259,8 @@ CellEvent RandomEvent(RandomStream& stream) {
       return WristRead{AnySample(stream)};
     case 11:
       return ScanTriggered{AnyTime(stream), AnyAnswer(stream)};
+    case 15:
+      return ArmRecovered{AnyTime(stream), AnyAnswer(stream)};
     case 12:
       return ScanStatusRead{static_cast<ScanStatus>(stream.Index(4))};
     case 13:

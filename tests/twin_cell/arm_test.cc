@@ -165,7 +165,7 @@ TEST_CASE("an arm that is blocked goes into protective stop and takes no more co
   const int motor = IdOf(model, mjOBJ_ACTUATOR, ArmJointName(0));
   model.actuator_forcerange[2 * motor] = model.actuator_forcerange[2 * motor + 1] = 0.0;
   const WaitOutcome outcome = RunTrajectory(bench.cell(), line);
-  CHECK(outcome.status == WaitOutcome::Status::kFault);
+  CHECK(outcome.status == WaitOutcome::Status::kProtectiveStop);
   CHECK_THAT(outcome.reason, Catch::Contains("protective stop") && Catch::Contains("joint 1"));
   CHECK_FALSE(bench.cell().arm.Start(line).accepted());
 }
