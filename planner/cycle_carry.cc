@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <deque>
 
 #include "planner/cycle_context.h"
 #include "planner/placement.h"
@@ -15,7 +16,10 @@ constexpr int kMostYawSteps = 8;         ///< In either sense.
 constexpr double kPlaceGap_m = 0.003;    ///< E stops this far above touching the tray.
 constexpr double kAbovePlace_m = 0.20;   ///< Last weighing: above all that lies on the tray.
 constexpr double kGuardedPlace_m = 0.035;  ///< From here on what lies on the tray may be met.
-constexpr double kTruthDelay_s = 2.0;      ///< A hose that lay on others rocks before it rests.
+constexpr double kWindow_s = 0.1;          ///< Averaging out what the sensor's noise and servos do.
+constexpr int kSteadyWindows = 3;
+constexpr double kSteadyShare = 0.15;  ///< Of the weighing's tolerance.
+constexpr double kTruthDelay_s = 2.0;  ///< A hose that lay on others rocks before it rests.
 
 void Open(CycleContext& c) {
   GripperCommand open;
@@ -26,6 +30,7 @@ void Open(CycleContext& c) {
   c.MoveFingers(open);
   c.mover.SetOpening(open.opening_m);
   c.cell.arm.SetPayload(0.0, Vector3::Zero());
+  c.LetGo();
 }
 
 void Retreat(CycleContext& c) {
@@ -118,6 +123,21 @@ HeldOutcome Carry(CycleContext& c, const RigidTransform& X_BE, int slot) {
 
 }  // namespace
 
+void WaitForSteadyLoad(CycleContext& c, double most_s) {
+  const double band_N =
+      kSteadyShare * c.setup.cycle.tolerance_share * c.setup.part.mass_kg * kGravity;
+  const int windows = std::max(kSteadyWindows, static_cast<int>(c.held.period_s / kWindow_s) + 2);
+  const TimeNs end = c.cell.clock.Now() + FromSeconds(most_s);
+  std::deque<double> means_N;
+  while (c.cell.clock.Now() + FromSeconds(kWindow_s) <= end) {
+    means_N.push_back(c.MeanWrench(kWindow_s).force_N.z());
+    if (static_cast<int>(means_N.size()) > windows) means_N.pop_front();
+    const auto [least, most] = std::minmax_element(means_N.begin(), means_N.end());
+    if (static_cast<int>(means_N.size()) == windows && *most - *least < band_N) return;
+  }
+  c.cell.clock.AdvanceTo(end);
+}
+
 HeldOutcome Resolve(CycleContext& c, const Vector3& load_torque_K) {
   // The load torque's horizontal axis: turning about it in the positive sense lets the heavy side
   // go down.
@@ -179,7 +199,7 @@ void PutBack(CycleContext& c) {
 AttemptOutcome Place(CycleContext& c, const Polyline& line_E) {
   const CycleConfig& speeds = c.setup.cycle;
   const std::optional<PlacementPose> found =
-      PlanPlacement(c.cell.layout, line_E, c.setup.part.radius_m, c.placed_T,
+      PlanPlacement(c.cell.layout, Sagged(line_E, c.setup.part), c.setup.part.radius_m, c.placed_T,
                     ToolYaw(c.mover.X_BE().linear()), [&](RigidTransform X_BE) {
                       if (!c.mover.Reaches(X_BE)) return false;
                       X_BE.translation().z() += kAbovePlace_m;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "planner/held_part.h"
 #include "planner/mover.h"
 #include "planner/pick_cycle.h"
 
@@ -14,6 +15,12 @@ inline double ComputeClock_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+struct CycleContext;
+/// Lets time pass until the load on the sensor no longer swings, `most_s` at most: the means of
+/// successive windows, over one period of the held part at least, within a share of what weighing
+/// must tell apart.
+void WaitForSteadyLoad(CycleContext& context, double most_s);
+
 /// What the steps of one round share. One per RunPickCycle; all steps run on the caller's thread.
 struct CycleContext {
   Cell& cell;
@@ -23,6 +30,7 @@ struct CycleContext {
   AttemptReport report;  ///< Of the running attempt.
   Wrench reference_K;    ///< Tare with empty fingers, tool vertical.
   TimeNs attempt_began{0};
+  HeldPart held;                   ///< How what the fingers closed on gives way.
   std::vector<Polyline> placed_T;  ///< Tubes on the tray, as they were laid.
 
   /// Adds the simulated time that passes during its life to one class of the report.
@@ -40,9 +48,9 @@ struct CycleContext {
     TimeNs began_;
   };
 
-  /// Mean wrench of the weighing window. Throws MoveFailure when it cannot be believed.
-  Wrench MeanWrench() {
-    const WrenchOutcome wrench = AverageWrench(cell, setup.cycle.weigh_window_s);
+  /// Mean wrench over `duration_s`. Throws MoveFailure when it cannot be believed.
+  Wrench MeanWrench(double duration_s) {
+    const WrenchOutcome wrench = AverageWrench(cell, duration_s);
     if (wrench.outcome.status != WaitOutcome::Status::kDone) {
       throw MoveFailure(wrench.outcome, "weighing");
     }
@@ -59,11 +67,19 @@ struct CycleContext {
     return fingers.state;
   }
 
-  /// Waits, averages and compares with the reference. Tool vertical and at rest.
-  Detection Weigh(double wait_s) {
+  /// From now on the fingers hold a part that lies so in frame E, or nothing.
+  void Hold(const Polyline& line_E) {
+    held = HeldPartOf(line_E, setup.part);
+    mover.SetLeastRamp(held.period_s);
+  }
+  void LetGo() { Hold({}); }
+
+  /// Waits until the load stands still, `most_s` at most, averages and compares with the reference.
+  /// Tool vertical and at rest.
+  Detection Weigh(double most_s) {
     const Timed timed(*this, &AttemptReport::SimTime::weigh);
-    Wait(cell, wait_s);
-    const Wrench now_K = MeanWrench();
+    WaitForSteadyLoad(*this, most_s);
+    const Wrench now_K = MeanWrench(setup.cycle.weigh_window_s);
     Detection out = DetectHeld(reference_K, now_K, setup.part.mass_kg,
                                setup.cycle.tolerance_share * setup.part.mass_kg * kGravity);
     out.at_s = Seconds(cell.clock.Now() - attempt_began);

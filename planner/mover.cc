@@ -1,5 +1,6 @@
 #include "planner/mover.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tubetwin {
@@ -31,7 +32,9 @@ JointVector Mover::Start() {
 MotionOptions Mover::Options(double speed_m_s, double acceleration_m_s2) const {
   MotionOptions options;
   options.speed_m_s = speed_m_s;
-  options.acceleration_m_s2 = acceleration_m_s2;
+  options.acceleration_m_s2 = least_ramp_s_ > 0.0
+                                  ? std::min(acceleration_m_s2, speed_m_s / least_ramp_s_)
+                                  : acceleration_m_s2;
   options.opening_m = opening_m_;
   options.finger_clearance_m = kFingerClearance_m;
   return options;

@@ -71,6 +71,10 @@ class Mover {
   /// Whether Line to the pose and each Tilt from there would be run.
   bool TiltsFrom(const RigidTransform& X_BE, const std::vector<Vector3>& rotations_B) const;
 
+  /// No motion from now on reaches its speed in less than this: one period of a held part that
+  /// swings leaves it at rest behind the ramp. 0: any.
+  void SetLeastRamp(double ramp_s) { least_ramp_s_ = ramp_s; }
+
   /// Opening of the pads from now on, for the clearance of the fingers.
   void SetOpening(double opening_m) { opening_m_ = opening_m; }
 
@@ -82,6 +86,7 @@ class Mover {
   Cell& cell_;
   MotionPlanner planner_;
   double opening_m_ = 0.085;
+  double least_ramp_s_ = 0.0;
   JointVector q_;  ///< End of the last motion; the measured joints where one was stopped.
 };
 

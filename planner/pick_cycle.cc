@@ -26,13 +26,14 @@ struct EndAtSeveral {};
 class Round {
  public:
   Round(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer)
-      : c_{cell, setup, observer, Mover(cell), {}, {}, {}, {}}, looker_(c_) {}
+      : c_{cell, setup, observer, Mover(cell), {}, {}, {}, {}, {}}, looker_(c_) {}
 
   void BeginAttempt() {
     c_.report = AttemptReport();
     c_.report.attempt = attempt_;
     c_.report.strategy = ResolutionStrategyFromName(c_.setup.resolution.strategy);
     c_.attempt_began = c_.cell.clock.Now();
+    c_.LetGo();
   }
 
   void EndAttempt(AttemptOutcome outcome, const std::string& reason) {
@@ -113,7 +114,7 @@ class Round {
     {
       const CycleContext::Timed weighing(c_, &AttemptReport::SimTime::settle);
       Wait(c_.cell, 0.3);
-      c_.reference_K = c_.MeanWrench();
+      c_.reference_K = c_.MeanWrench(c_.setup.cycle.weigh_window_s);
       c_.observer.OnReference(c_.reference_K);
     }
     RigidTransform near = X_BG;
@@ -264,6 +265,7 @@ class Round {
     c_.attempt_began = state.attempt_began;
     c_.placed_T = state.placed_T;
     c_.mover.Resume(state.q, state.opening_m);
+    c_.Hold(state.line_E);
     c_.observer.OnReference(c_.reference_K);
     c_.observer.OnDetection(*c_.report.detection);
   }
@@ -333,6 +335,7 @@ std::optional<RoundReport> Attempt(Round& round) {
     round.EndAttempt(AttemptOutcome::kNothingHeld, "");
     return std::nullopt;
   }
+  c.Hold(line_E);
   const Detection detection = round.LiftAndWeigh(*plan);
   round.EndAttempt(round.FinishHeld(*plan, line_E, detection), "");
   return std::nullopt;

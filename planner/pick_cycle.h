@@ -39,7 +39,7 @@ struct CycleConfig {
   double approach_m = 0.08;  ///< Height over the grasp where the fast part ends.
   double guarded_m = 0.010;  ///< Last part of the descent, guarded.
   double first_lift_m = 0.03;
-  double settle_s = 2.0;  ///< Between the end of a motion and the decision.
+  double settle_s = 2.0;  ///< At most, until the load stands still after a motion.
   double weigh_window_s = 0.2;
   double tolerance_share = 0.5;  ///< F_tol in tube weights.
   /// The round ends where several tubes hang in the fingers, once the observer has heard of it.

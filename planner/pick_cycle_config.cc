@@ -48,7 +48,7 @@ void CycleConfig::Visit(ConfigVisitor& v) {
           {0.02, 0.3});
   v.Field("guarded_m", "length of the guarded part", guarded_m, {0.002, 0.05});
   v.Field("first_lift_m", "lift before the first weighing", first_lift_m, {0.005, 0.2});
-  v.Field("settle_s", "between the end of a motion and the decision", settle_s, {0.1, 20});
+  v.Field("settle_s", "at most, until the load stands still after a motion", settle_s, {0.1, 20});
   v.Field("weigh_window_s", "mean over", weigh_window_s, {0.02, 5});
   v.Field("tolerance_share", "F_tol in tube weights", tolerance_share, {0.1, 0.9});
   v.Field("end_at_several",
