@@ -42,4 +42,17 @@ inline std::string ToHex(std::string_view bytes) {
   return out;
 }
 
+/// "09 10 03 E8", as manuals of Modbus print their frames.
+inline std::string ToSpacedHex(std::string_view bytes) {
+  static constexpr char kDigits[] = "0123456789ABCDEF";
+  std::string out;
+  for (const char letter : bytes) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (!out.empty()) out += ' ';
+    out += kDigits[byte >> 4];
+    out += kDigits[byte & 15];
+  }
+  return out;
+}
+
 }  // namespace tubetwin::test
