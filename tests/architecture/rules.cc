@@ -105,9 +105,9 @@ bool IsAllowedEverywhere(const std::string& include) {
   if (StartsWith(include, "Eigen/")) return true;
   if (include.find_first_of("/.") == std::string::npos) return true;
   static const std::set<std::string> kPosix = {
-      "dirent.h",   "dlfcn.h",        "fcntl.h",       "poll.h",      "sched.h",    "signal.h",
-      "spawn.h",    "sys/mman.h",     "sys/stat.h",    "sys/types.h", "sys/file.h", "sys/prctl.h",
-      "sys/wait.h", "sys/resource.h", "sys/utsname.h", "unistd.h"};
+      "dirent.h",    "dlfcn.h",    "fcntl.h",        "poll.h",        "sched.h",     "signal.h",
+      "spawn.h",     "termios.h",  "sys/mman.h",     "sys/stat.h",    "sys/types.h", "sys/file.h",
+      "sys/prctl.h", "sys/wait.h", "sys/resource.h", "sys/utsname.h", "unistd.h"};
   return kPosix.count(include) > 0;
 }
 

@@ -1,0 +1,254 @@
+#include "hw_bridge/emulators/gripper_emulator.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <asio.hpp>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/random.h"
+#include "tests/codecs/hex.h"
+#include "tests/support/catch.h"
+#include "tests/support/moving_fingers.h"
+#include "tests/support/temporary_folder.h"
+
+namespace tubetwin {
+namespace {
+
+using test::FromHex;
+using test::ToSpacedHex;
+
+using Catch::Matchers::Contains;
+
+GripperEmulatorConfig OnAnyPort() {
+  GripperEmulatorConfig config;
+  config.port = 0;
+  return config;
+}
+
+/// The emulator and its cell, in which the test decides when a period passes.
+struct Bench {
+  explicit Bench(const GripperEmulatorConfig& config = OnAnyPort())
+      : emulator(io, fingers, config) {}
+  void Step() {
+    now += kControlPeriod;
+    fingers.Advance(kControlPeriod);
+    emulator.Tick(now);
+  }
+  asio::io_context io;
+  MovingFingers fingers;
+  TimeNs now{0};
+  GripperEmulator emulator;
+};
+
+/// A client that only knows bytes.
+struct TcpClient {
+  explicit TcpClient(Bench& served) : bench(served), socket(bench.io) {
+    socket.connect(
+        {asio::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(bench.emulator.port())});
+    socket.non_blocking(true);
+  }
+  void Send(const std::string& bytes) { asio::write(socket, asio::buffer(bytes)); }
+  /// What comes within some periods of the cell, as hex; "closed" when the connection is.
+  std::string Receive(std::size_t enough = 1, int periods = 400) {
+    std::string all;
+    for (int i = 0; i < periods && all.size() < enough; ++i) {
+      bench.Step();
+      char bytes[512];
+      asio::error_code error;
+      const std::size_t size = socket.read_some(asio::buffer(bytes), error);
+      if (error && error != asio::error::would_block) return "closed";
+      all.append(bytes, size);
+      if (size == 0) std::this_thread::sleep_for(std::chrono::microseconds(50));
+    }
+    return ToSpacedHex(all);
+  }
+  std::string Ask(const std::string& hex) {
+    Send(FromHex(hex));
+    return Receive();
+  }
+  Bench& bench;
+  asio::ip::tcp::socket socket;
+};
+
+TEST_CASE("Modbus TCP requests are answered with the registers", "[unit]") {
+  Bench bench;
+  TcpClient client(bench);
+  CHECK(client.Ask("0001 0000 0006 09 03 07D0 0003") ==
+        ToSpacedHex(FromHex("0001 0000 0009 09 03 06 0000 0000 0300")));
+  CHECK(client.Ask("0002 0000 000D 09 10 03E8 0003 06 0100 0000 0000") ==
+        ToSpacedHex(FromHex("0002 0000 0006 09 10 03E8 0003")));
+  CHECK(client.Ask("0003 0000 0006 FF 04 07D0 0001") ==
+        ToSpacedHex(FromHex("0003 0000 0005 FF 04 02 1100")));
+  for (int i = 0; i < 2000; ++i) bench.Step();
+  CHECK(client.Ask("0004 0000 0006 00 03 07D0 0001") ==
+        ToSpacedHex(FromHex("0004 0000 0005 00 03 02 3100")));
+  // Write and read in one.
+  CHECK(client.Ask("0005 0000 0011 09 17 07D0 0002 03E8 0003 06 0900 00FF FFFF") ==
+        ToSpacedHex(FromHex("0005 0000 0007 09 17 04 3900 00FF")));
+  CHECK(bench.fingers.commands.back().opening_m == 0.0);
+  CHECK(bench.emulator.requests() == 5);
+}
+
+TEST_CASE("Modbus TCP requests that are none of the gripper's are refused", "[unit]") {
+  Bench bench;
+  TcpClient client(bench);
+  const auto [why, request, code] = GENERATE(table<const char*, const char*, const char*>({
+      {"address", "0001 0000 0006 09 03 07D0 0004", "83 02"},
+      {"address", "0001 0000 0006 09 04 0000 0001", "84 02"},
+      {"address", "0001 0000 0009 09 10 07D0 0001 02 0000", "90 02"},
+      {"count", "0001 0000 0006 09 03 07D0 0000", "83 03"},
+      {"count", "0001 0000 0006 09 03 07D0 00FF", "83 03"},
+      {"bytes", "0001 0000 0009 09 10 03E8 0002 02 0000", "90 03"},
+      {"function", "0001 0000 0006 09 01 07D0 0001", "81 01"},
+      {"function", "0001 0000 0006 09 06 03E8 0100", "86 01"},
+      {"function", "0001 0000 0002 09 2B", "AB 01"},
+      {"unit", "0001 0000 0006 08 03 07D0 0001", "83 0B"},
+  }));
+  CAPTURE(why, request);
+  CHECK_THAT(client.Ask(request), Catch::Matchers::EndsWith(code));
+  CHECK(bench.fingers.commands.empty());
+  CHECK_THAT(client.Ask("0002 0000 0006 09 03 07D0 0001"), Contains("00 02"));
+}
+
+TEST_CASE("Requests may come in pieces and in heaps", "[unit]") {
+  Bench bench;
+  TcpClient client(bench);
+  const std::string request = FromHex("0001 0000 0006 09 03 07D0 0001");
+  for (const char byte : request) {
+    client.Send(std::string(1, byte));
+    bench.Step();
+  }
+  CHECK(client.Receive() == ToSpacedHex(FromHex("0001 0000 0005 09 03 02 0000")));
+  std::string heap;
+  for (int i = 0; i < 100; ++i) heap += request;
+  client.Send(heap);
+  CHECK(FromHex(client.Receive(100 * 11)).size() == 100 * 11);
+}
+
+TEST_CASE("Garbage ends its connection and no other", "[unit]") {
+  Bench bench;
+  TcpClient good(bench);
+  for (int round = 0; round < 200; ++round) {
+    RandomStream stream(1, static_cast<std::uint64_t>(round), "modbus garbage");
+    TcpClient bad(bench);
+    std::string bytes(1 + stream.Index(600), '\0');
+    for (char& byte : bytes) byte = static_cast<char>(stream.Index(256));
+    if (round % 2 == 0) bytes.replace(0, 7, FromHex("0001 0000 0006 09"));
+    bad.Send(bytes);
+    for (int i = 0; i < 3; ++i) bench.Step();
+  }
+  CHECK_THAT(good.Ask("0007 0000 0006 09 03 07D0 0001"), Contains("00 07"));
+  TcpClient other(bench);
+  CHECK(other.Ask("0001 0001 0006 09 03 07D0 0001") == "closed");
+}
+
+TEST_CASE("A flood of idle connections does not lock the gripper up", "[unit]") {
+  Bench bench;
+  std::vector<std::unique_ptr<TcpClient>> flood;
+  for (int i = 0; i < 40; ++i) {
+    flood.push_back(std::make_unique<TcpClient>(bench));
+    bench.Step();
+  }
+  for (int i = 0; i < 1100; ++i) bench.Step();
+  TcpClient client(bench);
+  CHECK_THAT(client.Ask("0001 0000 0006 09 03 07D0 0001"), Contains("00 01"));
+}
+
+TEST_CASE("Modbus RTU on a pseudo-terminal gives the frames of the manual", "[unit]") {
+  const TemporaryFolder folder;
+  GripperEmulatorConfig config;
+  config.transport = "rtu";
+  config.device = folder / "ttyGRIPPER";
+  {
+    Bench bench(config);
+    CHECK(bench.emulator.device() == config.device);
+    const int line = ::open(config.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
+    REQUIRE(line >= 0);
+    const auto ask = [&](const std::string& hex) {
+      const std::string request = FromHex(hex);
+      REQUIRE(::write(line, request.data(), request.size()) ==
+              static_cast<ssize_t>(request.size()));
+      std::string all;
+      for (int i = 0; i < 100; ++i) {
+        bench.Step();
+        char bytes[512];
+        const ssize_t size = ::read(line, bytes, sizeof bytes);
+        if (size > 0) all.append(bytes, static_cast<std::size_t>(size));
+        std::this_thread::sleep_for(std::chrono::microseconds(50));
+      }
+      return ToSpacedHex(all);
+    };
+    CHECK(ask("09 10 03 E8 00 03 06 00 00 00 00 00 00 73 30") == "09 10 03 E8 00 03 01 30");
+    CHECK(ask("09 10 03 E8 00 03 06 01 00 00 00 00 00 72 E1") == "09 10 03 E8 00 03 01 30");
+    CHECK(ask("09 03 07 D0 00 01 85 CF") == "09 03 02 11 00 55 D5");
+    CHECK(ask("09 04 07 D0 00 01 30 0F") == "09 04 02 11 00 54 A1");
+    for (int i = 0; i < 2000; ++i) bench.Step();
+    CHECK(ask("09 03 07 D0 00 01 85 CF") == "09 03 02 31 00 4C 15");
+    // Illegal address, then noise, half a frame, another slave's: silence, and all goes on.
+    CHECK(ask("09 03 00 00 00 01 85 42") == "09 83 02 41 33");
+    CHECK(ask("55 AA 00 FF 13 37 09 09 09 09 09").empty());
+    CHECK(ask("09 03 07 D0").empty());
+    CHECK(ask("0A 03 07 D0 00 01 85 F9").empty());
+    CHECK(ask("09 04 07 D0 00 01 30 0F") == "09 04 02 31 00 4D 61");
+    ::close(line);
+  }
+  CHECK_FALSE(std::filesystem::is_symlink(config.device));
+}
+
+TEST_CASE("Link faults do to answers what they say", "[unit]") {
+  Bench bench;
+  TcpClient client(bench);
+  const std::string ask = "0001 0000 0006 09 03 07D0 0001";
+  const std::string answer = ToSpacedHex(FromHex("0001 0000 0005 09 03 02 0000"));
+  CHECK(client.Ask(ask) == answer);
+  SECTION("drop") {
+    bench.emulator.link().drop = true;
+    CHECK(client.Ask(ask).empty());
+    bench.emulator.link().drop = false;
+    CHECK(client.Ask(ask) == answer);
+  }
+  SECTION("delay") {
+    bench.emulator.link().delay = FromSeconds(0.1);
+    const TimeNs before = bench.now;
+    CHECK(client.Ask(ask) == answer);
+    CHECK(bench.now - before >= FromSeconds(0.1));
+  }
+  SECTION("duplicate") {
+    bench.emulator.link().duplicate = true;
+    client.Send(FromHex(ask));
+    CHECK(client.Receive(22) == answer + " " + answer);
+  }
+  SECTION("corrupt") {
+    bench.emulator.link().corrupt = true;
+    const std::string got = client.Ask(ask);
+    CHECK(got.size() == answer.size());
+    CHECK(got != answer);
+  }
+  SECTION("freeze") {
+    bench.emulator.link().freeze = true;
+    CHECK(client.Ask(ask).empty());
+    bench.emulator.link().freeze = false;
+    CHECK(client.Receive() == answer);
+  }
+}
+
+TEST_CASE("A port in use is a device that cannot be had", "[unit]") {
+  Bench bench;
+  GripperEmulatorConfig config;
+  config.port = bench.emulator.port();
+  try {
+    const Bench second(config);
+    FAIL("no error");
+  } catch (const Error& error) {
+    CHECK(error.kind() == ErrorKind::kDevice);
+    CHECK_THAT(error.what(), Contains("emulated gripper: cannot listen on 127.0.0.1:" +
+                                      std::to_string(config.port)));
+  }
+}
+
+}  // namespace
+}  // namespace tubetwin
