@@ -1,0 +1,37 @@
+#include "hw_bridge/drivers/robotiq/robotiq_config.h"
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/text.h"
+
+namespace tubetwin {
+
+void RobotiqConfig::Visit(ConfigVisitor& v) {
+  v.Field("host", "modbus_tcp: the gripper's address", host);
+  v.Field("port", "modbus_tcp: its TCP port", port, {1, 65535});
+  v.Field("device", "modbus_rtu: serial device, 115200 baud, 8 bits, no parity", device);
+  v.Field("slave", "the gripper's Modbus address", slave, {1, 247});
+}
+
+void RobotiqConfig::ValidateOrThrow() const {
+  if (transport != "tcp" && transport != "rtu") {
+    throw Error(ErrorKind::kConfig,
+                "gripper transport is '" + transport + "', allowed are 'tcp' and 'rtu'");
+  }
+  if (transport == "tcp" && host.empty()) {
+    throw Error(ErrorKind::kConfig,
+                "cell.gripper.host is empty, the driver 'modbus_tcp' needs an address");
+  }
+  if (transport == "rtu" && device.empty()) {
+    throw Error(ErrorKind::kConfig,
+                "cell.gripper.device is empty, the driver 'modbus_rtu' needs a serial device");
+  }
+  if (!(rate > 0.0)) {
+    throw Error(ErrorKind::kConfig, "rate is " + Number(rate) + ", allowed are numbers over 0");
+  }
+}
+
+std::string RobotiqConfig::Name() const {
+  return "gripper " + (transport == "rtu" ? device : host + ":" + std::to_string(port));
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "hw_bridge/base/config.h"
+
+namespace tubetwin {
+
+/// How to reach a Robotiq 2F-85: `[cell.gripper]` of a cell file.
+struct RobotiqConfig {
+  std::string transport =
+      "tcp";  ///< "tcp" or "rtu": the cell file's drivers modbus_tcp, modbus_rtu.
+  std::string host = "127.0.0.1";  ///< tcp.
+  int port = 1502;                 ///< tcp.
+  std::string device;              ///< rtu: serial device, 115200 baud 8N1.
+  int slave = 9;
+  /// Cell time per wall time: of the whole cell, so the cell file's own key and not visited here.
+  double rate = 1.0;
+  /// Activate the gripper when it is not: its fingers then open and close. Not visited: doctor, who
+  /// moves nothing, goes without.
+  bool activate = true;
+
+  /// Not `transport`, which the key `driver` says.
+  void Visit(ConfigVisitor& v);
+  /// Throws Error(kConfig) for what the fields' own ranges cannot say.
+  void ValidateOrThrow() const;
+  /// "gripper 127.0.0.1:1502", for messages.
+  std::string Name() const;
+};
+
+}  // namespace tubetwin
