@@ -29,6 +29,9 @@ constexpr double kFrictionSpeed_rad_s = 0.01;
 constexpr double kOnPathShare = 0.5, kOnPathShortest_s = 0.020;
 constexpr double kFastShare = 0.9, kFastShortest_s = 0.008;
 
+/// A halting arm's reference stands below this.
+constexpr double kStandstill_rad_s = 1e-9;
+
 double Quantised(double value, double step) { return std::round(value / step) * step; }
 
 }  // namespace
@@ -106,7 +109,9 @@ CommandResult TwinArm::Append(const CheckedTrajectory& continuation) {
   const auto rejected = [](const std::string& reason) {
     return CommandResult{CommandResult::Status::kRejected, reason};
   };
-  if (mode_ != ArmMode::kMoving || stopping_) return rejected("no trajectory is running");
+  if (mode_ != ArmMode::kMoving || stopping_ || servo_) {
+    return rejected("no trajectory is running");
+  }
   const std::vector<TrajectoryPoint>& points = continuation.trajectory().points;
   const double gap = (points.front().q - trajectory_.points.back().q).cwiseAbs().maxCoeff();
   if (gap > kJoinTolerance_rad) {
@@ -122,15 +127,21 @@ CommandResult TwinArm::Append(const CheckedTrajectory& continuation) {
   return {};
 }
 
-void TwinArm::Stop(StopKind kind) {
-  if (mode_ != ArmMode::kMoving) return;
-  const double share = kind == StopKind::kFast ? kFastShare : kOnPathShare;
-  double ramp_s = kind == StopKind::kFast ? kFastShortest_s : kOnPathShortest_s;
+double TwinArm::HaltTime_s(const JointVector& qd, double share, double shortest_s) const {
+  double ramp_s = shortest_s;
   for (int i = 0; i < kNumJoints; ++i) {
     // A half cosine's steepest slope is pi/2 of its mean.
     const double mean_rad_s2 = share * arm_.joints[i].max_acceleration_rad_s2 * 2.0 / kPi;
-    ramp_s = std::max(ramp_s, std::abs(reference_.qd[i]) / mean_rad_s2);
+    ramp_s = std::max(ramp_s, std::abs(qd[i]) / mean_rad_s2);
   }
+  return ramp_s;
+}
+
+void TwinArm::Stop(StopKind kind) {
+  if (mode_ != ArmMode::kMoving || servo_) return;
+  const double share = kind == StopKind::kFast ? kFastShare : kOnPathShare;
+  const double shortest_s = kind == StopKind::kFast ? kFastShortest_s : kOnPathShortest_s;
+  const double ramp_s = HaltTime_s(reference_.qd, share, shortest_s);
   // A second stop may only shorten what is left of the first.
   if (stopping_ && ramp_s >= ramp_s_ - ramp_elapsed_s_) return;
   stopping_ = true;
@@ -173,14 +184,66 @@ void TwinArm::Restore(const JsonView& state) {
   p_FPayload_ = state.Field("p_FPayload_m").AsVector3();
 }
 
+ServoState TwinArm::Servo() const {
+  const ArmState state = State();
+  return {state.time, state.q, state.qd, reference_.q, servo_, fault_};
+}
+
+void TwinArm::Follow(const ServoReference& reference) {
+  TT_CHECK(servo_ || mode_ != ArmMode::kMoving);
+  if (mode_ != ArmMode::kReady && !servo_) return;
+  servo_ = true;
+  mode_ = ArmMode::kMoving;
+  followed_ = reference;
+  halt_s_ = 0.0;
+}
+
+void TwinArm::ClearServoFault() {
+  if (mode_ == ArmMode::kMoving) return;
+  mode_ = ArmMode::kReady;
+  fault_.clear();
+}
+
+void TwinArm::AdvanceServo() {
+  if (followed_) {
+    reference_ = *followed_;
+    followed_.reset();
+    return;
+  }
+  // Where the last reference went in one step.
+  const double step_s = model_.opt.timestep;
+  reference_.q += step_s * (reference_.qd + 0.5 * step_s * reference_.qdd);
+  reference_.qd += step_s * reference_.qdd;
+  if (reference_.qd.cwiseAbs().maxCoeff() < kStandstill_rad_s) {
+    reference_.qd.setZero();
+    reference_.qdd.setZero();
+    servo_ = false;
+    mode_ = ArmMode::kReady;
+    return;
+  }
+  if (halt_s_ == 0.0) {
+    halt_qd_ = reference_.qd;
+    halt_s_ = HaltTime_s(halt_qd_, kFastShare, kFastShortest_s);
+    halted_s_ = 0.0;
+  }
+  halted_s_ += step_s;
+  const double u = std::min(1.0, halted_s_ / halt_s_);
+  const JointVector next_qd = 0.5 * (1.0 + std::cos(kPi * u)) * halt_qd_;
+  reference_.qdd = (next_qd - reference_.qd) / step_s;
+}
+
 void TwinArm::Fault(const std::string& text) {
   mode_ = ArmMode::kProtectiveStop;
+  servo_ = false;
+  followed_.reset();
+  halt_s_ = 0.0;
   fault_ = text;
   reference_ = {};
   reference_.q = TruePosition();
 }
 
 void TwinArm::AdvanceReference() {
+  if (servo_) return AdvanceServo();
   reference_.qdd.setZero();
   if (mode_ != ArmMode::kMoving) {
     reference_.qd.setZero();
