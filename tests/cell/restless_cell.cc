@@ -147,9 +147,9 @@ std::string Procedure(Cell& cell, int rounds, int planted) {
     const WaitOutcome guarded = RunGuarded(cell, Move(0.01 + plant()), 2.0);
     heard += guarded.reason + Number(guarded.progress_s);
     heard += cell.arm.Append(Move(0.03 + plant())).reason;
-    heard += Number(MoveGripper(cell, {0.01 * (i % 8) + plant(), 0.1, 60.0}).opening_m);
+    heard += Number(MoveGripper(cell, {0.01 * (i % 8) + plant(), 0.1, 60.0}).state.opening_m);
     cell.arm.SetPayload(0.05 + plant(), Vector3(0, 0, 0.1));
-    heard += Number(AverageWrench(cell, 0.02).force_N.z());
+    heard += Number(AverageWrench(cell, 0.02).mean_K.force_N.z());
     if (i % 3 == 0) {
       const OrganizedCloud cloud = Scan(cell);
       heard += Bits(cloud);
@@ -170,7 +170,7 @@ struct RestlessCell::Impl {
         gripper(clock, stream.Fork("gripper")),
         wrist(clock, stream.Fork("wrist")),
         scanner(stream.Fork("scanner"), width, height),
-        cell{clock, arm, gripper, wrist, scanner, Hc10(), {}, {}} {}
+        cell{clock, arm, gripper, wrist, scanner, Hc10(), {}, {}, {}} {}
   Clock clock;
   RestlessArm arm;
   RestlessGripper gripper;
