@@ -78,7 +78,7 @@ class RestlessGripper : public Gripper {
     state.object = stream_.Index(4) == 0 ? GripperObject::kContactClosing : GripperObject::kMoving;
     state.opening_m = 0.085 * stream_.Index(256) / 255.0;
     state.requested_m = requested_m_;
-    state.fault = stream_.Index(30) == 0 ? 9 : 0;
+    state.fault = stream_.Index(30) == 0 ? 7 : 0;  // Told, but no trouble.
     return state;
   }
 
@@ -142,9 +142,9 @@ std::string Procedure(Cell& cell, int rounds, int planted) {
   int command = 0;
   const auto plant = [&] { return command++ == planted ? 0.001 : 0.0; };
   for (int i = 0; i < rounds; ++i) {
-    const WaitOutcome moved = RunTrajectory(cell, Move(0.02 + plant()));
+    const WaitOutcome moved = RunTrajectory(cell, Move(0.002 + plant()));
     heard += moved.reason + Number(moved.progress_s);
-    const WaitOutcome guarded = RunGuarded(cell, Move(0.01 + plant()), 2.0);
+    const WaitOutcome guarded = RunGuarded(cell, Move(0.001 + plant()), 2.0);
     heard += guarded.reason + Number(guarded.progress_s);
     heard += cell.arm.Append(Move(0.03 + plant())).reason;
     heard += Number(MoveGripper(cell, {0.01 * (i % 8) + plant(), 0.1, 60.0}).state.opening_m);
