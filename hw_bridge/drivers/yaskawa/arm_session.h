@@ -1,0 +1,97 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hw_bridge/drivers/yaskawa/arm_trouble.h"
+#include "hw_bridge/drivers/yaskawa/motion_link.h"
+#include "hw_bridge/drivers/yaskawa/state_link.h"
+#include "hw_bridge/drivers/yaskawa/streamed_motion.h"
+#include "hw_bridge/drivers/yaskawa/yaskawa_config.h"
+
+namespace tubetwin {
+
+/// What YaskawaArm does, without its thread and its lock: never waits but in Connect() and Leave().
+///
+/// What ends a motion, or makes the controller unready, is remembered until Recover(): it goes away
+/// neither by itself nor by a hand at the pendant.
+class ArmSession {
+ public:
+  ArmSession(const YaskawaConfig& config, const ArmModel& arm, const CellClock& clock,
+             NetLoop& loop);
+
+  /// Connects, awaits the first state and, when armed, makes sure of trajectory mode; a stop or an
+  /// alarm is left as it is. Throws Error(kDevice).
+  void Connect();
+  /// One turn of the I/O thread: takes what came, sends what is due.
+  void Turn();
+  /// How long the next turn may wait for something to come in.
+  std::chrono::nanoseconds Patience() const;
+  /// Stops a motion, ends trajectory mode. At most 0.4 s.
+  void Leave();
+
+  ArmState State() const;
+  CommandResult Start(const CheckedTrajectory& trajectory);
+  CommandResult Append(const CheckedTrajectory& continuation);
+  void Stop(StopKind kind);
+  CommandResult Recover();
+
+ private:
+  using Wall = std::chrono::steady_clock;
+  enum class Question { kNone, kWhyNotReady, kTrajectoryMode };
+
+  double Now_s() const { return Seconds(clock_.Now()); }
+  /// Wall time of a limit in cell time.
+  std::chrono::nanoseconds Limit(double s) const;
+  void AwaitState(Wall::time_point deadline);
+  void AwaitAnswer(Wall::time_point deadline);
+  void Ask(Question question);
+
+  void TakeState();
+  void TakeAnswers();
+  void TakeAnswerToQuestion(const simple_message::MotionReply& reply);
+  void TakeRefusal(const StreamedMotion::Problem& problem);
+  void Watch();
+  void Send();
+  void FinishMotion();
+  void EndMotion(bool done);
+  /// Clears what the controller still has of the motion.
+  void DropMotion();
+  void Latch(const ArmTrouble& trouble);
+  void Lose(const std::string& why);
+  std::optional<std::string> WhyNotStart(const JointTrajectory& trajectory) const;
+  /// What hinders motion while none is under way.
+  std::optional<ArmTrouble> Hindrance() const;
+  /// Where the controller holds the arm.
+  JointVector StartPoint() const;
+
+  YaskawaConfig config_;
+  const ArmModel& arm_;
+  const CellClock& clock_;
+  NetLoop& loop_;
+  StateLink state_link_;
+  MotionLink motion_link_;
+
+  ArmState state_;  ///< Time, q and qd of the newest feedback; the last motion's end.
+  bool heard_ = false;
+  std::optional<simple_message::RobotStatus> status_;
+  int statuses_ = 0;      ///< That came.
+  int believe_from_ = 0;  ///< Older ones may be from before the last change.
+  std::string lost_;      ///< Why the link is lost; empty: it is not.
+  std::optional<ArmTrouble> latch_;
+  /// What ended a motion, until the controller has said whether it knows more of it.
+  std::optional<ArmTrouble> pending_;
+  Question question_ = Question::kNone;
+  bool recover_ = false;         ///< Somebody asked for it.
+  bool answered_ready_ = false;  ///< The last question's answer.
+  std::int32_t answered_subcode_ = 0;
+
+  std::optional<StreamedMotion> motion_;
+  std::optional<int> over_at_;  ///< Statuses that had come when the motion was over.
+  double over_since_s_ = 0;
+  std::optional<JointVector> commanded_;  ///< Where the controller holds the arm, where known.
+  Wall::time_point sent_{};
+};
+
+}  // namespace tubetwin

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "hw_bridge/cell/devices.h"
+#include "hw_bridge/codecs/simple_message.h"
+#include "hw_bridge/drivers/yaskawa/path_stream.h"
+
+namespace tubetwin {
+
+/// One motion as a conversation with the controller: what to ask next, and what its answers mean.
+/// Knows nothing of sockets; all times are the cell's.
+///
+/// The controller holds what it was given in a queue and runs it whatever happens to the client, so
+/// only `ahead_s` of the path is given in advance; how much waits there is asked for every 0.1 s
+/// and reckoned in between, so that an arm that is held back is not given more.
+class StreamedMotion {
+ public:
+  /// `arm` must outlive it.
+  StreamedMotion(const JointTrajectory& trajectory, const JointVector& q_start, const ArmModel& arm,
+                 double ahead_s);
+
+  void Append(const JointTrajectory& continuation) { stream_.Append(continuation); }
+  /// `qd`: the arm's present speed. On the path with a ramp behind what was given; an arm that
+  /// moves slowly is stopped at once, for it stands before it has left the path.
+  void Stop(StopKind kind, const JointVector& qd);
+
+  /// What to send now, given that nothing is unanswered; nothing: wait.
+  std::optional<simple_message::Body> Next(double now_s);
+  /// STOP_MOTION is due, whatever is unanswered.
+  bool StopDue() const { return stopping_ && !stop_sent_; }
+
+  /// An answer that ends the motion with trouble.
+  struct Problem {
+    std::string text;          ///< "the controller refused point 7: speed (3013)".
+    std::int32_t subcode = 0;  ///< Of a controller that is not ready; 0: it is something else.
+  };
+  std::optional<Problem> Take(const simple_message::Body& request,
+                              const simple_message::MotionReply& reply, double now_s);
+
+  /// The controller has no more of it: all was run, or it has stopped.
+  bool over() const { return stopped_ || (empty_ && stream_.finished() && !unaccepted_); }
+  /// Stop() was called and changes how it ends.
+  bool stopped() const { return stopping_ || stream_.ramped(); }
+  bool halted() const { return stopped_; }  ///< By STOP_MOTION.
+  /// The controller makes the arm wait or crawl.
+  bool held_back() const { return slow_counts_ >= kSlowCounts; }
+  const PathStream& stream() const { return stream_; }
+  /// Time along the path where the controller is by now.
+  double Progress_s(double now_s) const { return stream_.PathTime(Executed_s(now_s)); }
+  /// Where it ends: the last point that was accepted.
+  const JointVector& q_last() const { return accepted_.q; }
+
+ private:
+  static constexpr int kSlowCounts = 4;
+  simple_message::Body PointMessage() const;
+  std::optional<Problem> TakePoint(const simple_message::MotionReply& reply, double now_s);
+  std::optional<Problem> TakeCount(int count, double now_s);
+  bool CountDue(double now_s) const;
+  double given_s() const { return 1e-3 * static_cast<double>(accepted_.time_ms); }
+  double Executed_s(double now_s) const;
+
+  PathStream stream_;
+  const ArmModel& arm_;
+  double ahead_s_;
+  std::optional<PathStream::Point> unaccepted_;  ///< Was sent, or waits to be sent again.
+  double retry_s_ = 0;
+  std::int32_t sequence_ = 0;  ///< Of the next point to be accepted.
+  PathStream::Point accepted_;
+  double accepted_at_s_ = 0, counted_at_s_ = 0;
+  double anchor_s_ = 0, anchor_at_s_ = 0;  ///< The controller was there then.
+  int slow_counts_ = 0;
+  bool empty_ = false;  ///< The controller has run what it was given.
+  bool stopping_ = false, stop_sent_ = false, stopped_ = false;
+};
+
+}  // namespace tubetwin
