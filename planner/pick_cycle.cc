@@ -48,6 +48,7 @@ class Round {
       failed_.clear();
       expected_ = c_.report.tubes_in_bin - 1;
       looker_.MarkAround(c_.report.plan->target);
+      c_.cell.proven = true;
     } else {
       ++attempt_;
       looker_.MarkAll();

@@ -22,6 +22,8 @@ struct Cell {
   SafetyLimits safety;
   /// Set while a tube that was weighed is carried: from here on losing it ends a motion.
   bool carrying = false;
+  /// Set when the first tube was placed: the cell is set up right, and start_speed_m_s is over.
+  bool proven = false;
 };
 
 // Waiting, guarding and weighing: the same code on every cell, loops over clock and states. Limits

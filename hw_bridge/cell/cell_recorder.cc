@@ -149,8 +149,8 @@ struct CellRecorder::Impl {
         gripper(inner.gripper, tape),
         wrist(inner.wrist, tape),
         scanner(inner.scanner, tape),
-        cell{clock,           arm,          gripper,   wrist,        scanner,
-             inner.arm_model, inner.layout, inner.bin, inner.safety, false} {}
+        cell{clock,           arm,          gripper,   wrist,       scanner,
+             inner.arm_model, inner.layout, inner.bin, inner.safety} {}
 
   Tape tape;
   RecordedClock clock;

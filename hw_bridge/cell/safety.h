@@ -15,6 +15,8 @@ struct SafetyLimits {
   double hold_s = 120.0;           ///< How long a controller may hold the arm back.
   /// Trajectories are stretched until E moves no faster; 0: as planned.
   double max_speed_m_s = 0.0;
+  /// The same until Cell::proven; 0: no other limit. A real arm's own, so not visited here.
+  double start_speed_m_s = 0.0;
 
   void Visit(ConfigVisitor& v);
 

@@ -68,7 +68,9 @@ std::optional<WaitOutcome> RefuseStart(const Cell& cell, const CheckedTrajectory
 }
 
 CheckedTrajectory WithinSpeed(const Cell& cell, const CheckedTrajectory& trajectory) {
-  const double limit_m_s = cell.safety.max_speed_m_s;
+  double limit_m_s = cell.safety.max_speed_m_s;
+  const double start_m_s = cell.proven ? 0.0 : cell.safety.start_speed_m_s;
+  if (start_m_s > 0.0) limit_m_s = limit_m_s > 0.0 ? std::min(limit_m_s, start_m_s) : start_m_s;
   if (limit_m_s <= 0.0) return trajectory;
   double fastest_m_s = 0.0;
   for (double t = 0.0; t < trajectory.duration_s(); t += kSpeedStep_s) {

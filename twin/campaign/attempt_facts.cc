@@ -37,6 +37,8 @@ std::vector<AttemptFacts> FactsOf(const RoundRecord& record) {
       facts.outside = outside - outside_before;
       placed_before = placed;
       outside_before = outside;
+    } else if (row["success"].is_null() && row["tubes_in_bin"].is_number()) {
+      facts.tubes_left = row["tubes_in_bin"];  // Without truth, what the pipeline saw.
     }
     facts.failure = FailureOf(facts, crashed);
     out.push_back(std::move(facts));

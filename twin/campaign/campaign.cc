@@ -17,7 +17,6 @@ namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* kDefaultPart = "pvc_a";  // As ScenarioPile has it.
 
 /// What a campaign file says besides its arms.
 struct CampaignKeys {
@@ -65,6 +64,7 @@ std::string ArmName(const std::string& given, bool alone, const ConfigSource& ke
 /// Reads what rounds will read, so that a missing part or pile is told before the first.
 void ReadInputs(CampaignArm& arm, const std::string& folder, int rounds) {
   Scenario& scenario = arm.scenario;
+  RequireTwin(scenario, "a campaign");
   ScenarioVisuals(scenario, folder);
   if (!scenario.pile.file.empty()) {
     Scenario first = scenario;
@@ -83,7 +83,7 @@ void ReadInputs(CampaignArm& arm, const std::string& folder, int rounds) {
     arm.tubes = static_cast<int>(pile.tubes.size());
     return;
   }
-  arm.part = LoadPart(scenario.pile.part.empty() ? kDefaultPart : scenario.pile.part);
+  arm.part = LoadPart(ScenarioPartName(scenario));
   arm.tubes = scenario.pile.count;
   ScenarioBin(scenario, Bin().size_m, folder);
 }

@@ -114,6 +114,7 @@ ReplayResult ReplayRound(const std::string& recording_path, const ReplayOptions&
   ReplayCell replay(std::move(recording));
   const CellRecordingHeader& header = replay.header();
   const Scenario scenario = RecordedScenario(header, recording_path);
+  replay.cell().safety = ScenarioSafety(scenario);
   const PickCycleSetup setup = ScenarioCycle(scenario, header.part, options.parallelism);
   ReplayObserver observer(replay, options, result);
   try {

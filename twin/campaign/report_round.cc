@@ -270,11 +270,15 @@ std::string RoundReportHtml(const RoundReportInput& input) {
             Section("belief", "Belief against truth", Belief(input.rows)) + "</div>\n" +
             Section("attempts", "Every attempt", Attempts(input));
   }
+  const bool believed = At(input.summary, "/scored_by") == "belief";
   body +=
-      "<footer><p>Success is judged by the simulation's truth, which the picking pipeline never "
-      "sees. This command, run in the folder of this page, repeats the round:</p><pre "
-      "class=\"command\">" +
-      Escaped(RepeatCommand(input.link)) + "</pre></footer>\n";
+      std::string("<footer><p>") +
+      (believed ? "The cell of this round has no truth: what was placed is what the picking "
+                  "pipeline believes. This command, run in the folder of this page, runs the cell "
+                  "again:"
+                : "Success is judged by the simulation's truth, which the picking pipeline never "
+                  "sees. This command, run in the folder of this page, repeats the round:") +
+      "</p><pre class=\"command\">" + Escaped(RepeatCommand(input.link)) + "</pre></footer>\n";
   Json data = AttemptData(input.attempts);
   if (!input.picture.empty()) data["pictures"].push_back(input.picture);
   Json content{{"schema", "tubetwin/report/1"}, {"kind", "round"}, {"summary", input.summary}};

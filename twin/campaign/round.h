@@ -6,6 +6,8 @@
 
 #include "hw_bridge/base/json.h"
 #include "hw_bridge/base/parallel.h"
+#include "hw_bridge/cell/cell.h"
+#include "planner/pick_cycle.h"
 #include "twin/campaign/scenario.h"
 
 namespace tubetwin {
@@ -30,6 +32,8 @@ struct RoundOptions {
   std::function<void(const std::string&)>
       progress;  ///< One line of where the round is; may be empty.
   std::function<bool()> stop_requested;
+  /// As PickCycleSetup's: an operator's word after a stop.
+  std::function<Acknowledgement(const std::string&)> acknowledge;
 };
 
 /// What a round came to.
@@ -37,6 +41,7 @@ struct RoundResult {
   Json summary;                     ///< Content of summary.json.
   std::vector<Json> rows, timings;  ///< Of picks.jsonl and timings.jsonl.
   bool interrupted = false;
+  bool faulted = false;  ///< A device ended it.
 };
 
 /// The stored moment that a round with cycle.end_at_several ends at; pile.file takes it.
@@ -48,11 +53,16 @@ inline constexpr const char* kCellRecordingFile = "cell.rec.zst";
 /// Folder of a failed attempt below failures/; `row` counts rows of picks.jsonl from 0.
 std::string FailureFolderName(int row);
 
-/// Runs one whole round in the twin and writes the result folder (design.md 7): wires cell, cycle
-/// and evaluator, and alone scores by truth. Same scenario, same bytes in every file but
-/// manifest.json, timings.jsonl and the film. Throws Error(kCannotCreate) when the folder holds
-/// rows of another configuration, before anything is written; and what settling, devices and files
-/// throw.
+/// Runs one whole round in the twin, all of whose devices are the scenario's, and writes the result
+/// folder (design.md 7): wires cell, cycle and evaluator, and alone scores by truth. Same scenario,
+/// same bytes in every file but manifest.json, timings.jsonl and the film. Throws
+/// Error(kCannotCreate) when the folder holds rows of another configuration, before anything is
+/// written; Error(kConfig) for other devices; and what settling, devices and files throw.
 RoundResult RunRound(const Scenario& scenario, const RoundOptions& options);
+
+/// Runs one whole round on a cell whose truth nobody knows, whatever its devices are: same folder
+/// without start.pile.json, cell.xml and pictures; what counts as placed is what the pipeline
+/// believes (RoundScorer). The round ends with "fault" when a device fails. Throws as RunRound.
+RoundResult RunCellRound(Cell& cell, const Scenario& scenario, const RoundOptions& options);
 
 }  // namespace tubetwin

@@ -59,31 +59,9 @@ void Scenario::BinChoice::Visit(ConfigVisitor& v) {
   v.Field("X_BN", "floor centre x y z in metres and yaw in degrees, in the robot's base", X_BN, 4);
 }
 
-void Scenario::CellChoice::Device::Visit(ConfigVisitor& v) {
-  v.Choice("driver", "which device serves this role", driver, {"twin"});
-}
-
-void Scenario::CellChoice::ScannerDevice::Visit(ConfigVisitor& v) {
-  Device::Visit(v);
-  v.Field("hand_eye_error", "error of the scanner's pose against what [physics] draws; 0: none",
-          hand_eye_error, {0, 100});
-  effects.Visit(v);
-}
-
-void Scenario::CellChoice::ArmDevice::Visit(ConfigVisitor& v) {
-  Device::Visit(v);
-  v.Field("visual_meshes",
-          "meshes (STL, OBJ, PLY) of base and links 1 to 6 in their own frames, for pictures; "
-          "empty texts: plain shapes",
-          visual_meshes);
-  v.Choice("visual_units", "unit of the meshes; empty: metres", visual_units, MeshUnitChoices());
-}
-
-void Scenario::CellChoice::Visit(ConfigVisitor& v) {
-  v.Section("arm", "the arm", arm);
-  v.Section("gripper", "the gripper", gripper);
-  v.Section("wrist", "the force/torque sensor", wrist);
-  v.Section("scanner", "the scanner", scanner);
+void Scenario::PartChoice::Visit(ConfigVisitor& v) {
+  v.Field("name", "what lies in the bin of this cell: part name or part file; [pile] part wins",
+          name);
 }
 
 void Scenario::Visit(ConfigVisitor& v) {
@@ -98,7 +76,49 @@ void Scenario::Visit(ConfigVisitor& v) {
   v.Section("evaluator", "physics roll-outs inside the planner", evaluator);
   v.Section("resolution", "when several tubes hang in the fingers", resolution);
   v.Section("cycle", "speeds, forces and waits of the pick cycle", cycle);
+  v.Section("part", "the part, for cell files", part);
+  v.Section("calibration", "how the tools hang on the flange", calibration);
+  v.Field("rate", "how many times as fast as the wall's the devices' clocks run (emulated ones)",
+          rate, {0.01, 100});
   v.Section("cell", "which devices", cell);
+}
+
+std::string ScenarioPartName(const Scenario& scenario) {
+  if (!scenario.pile.part.empty()) return scenario.pile.part;
+  return scenario.part.name.empty() ? "pvc_a" : scenario.part.name;
+}
+
+CellLayout ScenarioLayout(const Scenario& scenario) {
+  const auto pose = [](const char* key, const std::vector<double>& x) {
+    if (Eigen::Vector4d(x[3], x[4], x[5], x[6]).norm() < 1e-6) {
+      throw Error(ErrorKind::kConfig, std::string("calibration.") + key +
+                                          ": the quaternion is zero; w x y z of length one is "
+                                          "needed, as in [0, 0, 0.033, 1, 0, 0, 0]");
+    }
+    return MakeTransform(RotationFromWxyz(x[3], x[4], x[5], x[6]), Vector3(x[0], x[1], x[2]));
+  };
+  CellLayout layout;
+  layout.X_FK = pose("X_FK", scenario.calibration.X_FK);
+  layout.X_FE = pose("X_FE", scenario.calibration.X_FE);
+  layout.X_FS = pose("X_FS", scenario.calibration.X_FS);
+  return layout;
+}
+
+SafetyLimits ScenarioSafety(const Scenario& scenario) {
+  SafetyLimits safety = scenario.cell.safety.AtRate(scenario.rate);
+  if (scenario.cell.arm.driver == "simple_message") {
+    safety.start_speed_m_s = scenario.cell.arm.start_speed_m_s;
+  }
+  return safety;
+}
+
+void RequireTwin(const Scenario& scenario, const std::string& who) {
+  if (scenario.cell.IsTwin()) return;
+  throw Error(ErrorKind::kConfig, "cell: " + who + " needs the twin's four devices; found arm '" +
+                                      scenario.cell.arm.driver + "', gripper '" +
+                                      scenario.cell.gripper.driver + "', wrist '" +
+                                      scenario.cell.wrist.driver + "', scanner '" +
+                                      scenario.cell.scanner.driver + "'");
 }
 
 RoundPhysics ScenarioPhysics(const Scenario& scenario, const Part& part) {
@@ -234,7 +254,9 @@ std::vector<ArchivedFile> ArchiveMeshes(Scenario& scenario, const std::string& f
 
 Pile AskedPile(const Scenario& scenario, const std::string& folder) {
   PileOverrides overrides;
-  if (!scenario.pile.part.empty()) overrides.part = scenario.pile.part;
+  if (!scenario.pile.part.empty() || !scenario.part.name.empty()) {
+    overrides.part = ScenarioPartName(scenario);
+  }
   if (!scenario.bin.size_m.empty() || !scenario.bin.mesh.empty()) {
     overrides.bin_size_m = ScenarioBin(scenario, {}, folder).size_m;
   }
@@ -245,7 +267,7 @@ Pile AskedPile(const Scenario& scenario, const std::string& folder) {
 
 Pile ScenarioPile(const Scenario& scenario, const std::string& folder) {
   if (!scenario.pile.file.empty()) return AskedPile(scenario, folder);
-  const Part part = LoadPart(scenario.pile.part.empty() ? "pvc_a" : scenario.pile.part);
+  const Part part = LoadPart(ScenarioPartName(scenario));
   const Bin bin = ScenarioBin(scenario, Bin().size_m, folder);
   const RoundPhysics physics = ScenarioPhysics(scenario, part);
   SettleResult made = GeneratePile(part, bin, scenario.pile.count, scenario.pile.arrangement,

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include "hw_bridge/base/config.h"
+#include "models/layout.h"
 #include "models/physics.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/pick_cycle.h"
 #include "scenes/pile.h"
+#include "twin/campaign/cell_choice.h"
 #include "twin/render/recording.h"
 #include "twin/render/scan_geometry.h"
 
@@ -44,29 +46,31 @@ struct Scenario {
   ResolutionConfig resolution;
   CycleConfig cycle;
 
-  /// Device choice, table [cell.*]. This program has the twin's drivers.
-  struct CellChoice {
-    struct Device {
-      std::string driver = "twin";
-      void Visit(ConfigVisitor& v);
-    } gripper, wrist;
-    struct ArmDevice : Device {
-      /// Base and links 1 to 6 in their own frames (models/arm/hc10.toml), for pictures; empty
-      /// texts: plain shapes.
-      std::vector<std::string> visual_meshes;
-      std::string visual_units;
-      void Visit(ConfigVisitor& v);
-    } arm;
-    struct ScannerDevice : Device {
-      double hand_eye_error = 1.0;  ///< Of what [physics] draws; 0: none.
-      ScannerEffects effects;
-      void Visit(ConfigVisitor& v);
-    } scanner;
+  /// The cell's own, where no pile says them: what lies in the bin, where tools hang, how fast the
+  /// devices' clocks run against the wall's (emulated ones).
+  struct PartChoice {
+    std::string name;  ///< Part name or file; empty: what [pile] says.
     void Visit(ConfigVisitor& v);
-  } cell;
+  } part;
+  CalibrationChoice calibration;
+  double rate = 1.0;
+  CellChoice cell;
 
   void Visit(ConfigVisitor& v);
 };
+
+/// Name or file of the part where no pile file says it: of [pile], else [part], else "pvc_a".
+std::string ScenarioPartName(const Scenario& scenario);
+
+/// The cell's layout with the scenario's calibration. Throws Error(kConfig) for a quaternion of
+/// length zero.
+CellLayout ScenarioLayout(const Scenario& scenario);
+
+/// What stops the arm of the scenario's cell, at its rate; a real arm starts at reduced speed.
+SafetyLimits ScenarioSafety(const Scenario& scenario);
+
+/// Throws Error(kConfig) naming `who` unless every device is the twin's: only there is truth.
+void RequireTwin(const Scenario& scenario, const std::string& who);
 
 /// The physics of the scenario's round for a part: nominal, or drawn.
 RoundPhysics ScenarioPhysics(const Scenario& scenario, const Part& part);

@@ -79,10 +79,13 @@ void RoundScorer::Restore(const JsonView& state) {
   outside_before_ = static_cast<int>(outside_ids_.size());
 }
 
-void RoundScorer::AtDetection() { held_at_detection_ = truth_.Held(); }
+void RoundScorer::AtDetection() {
+  if (truth_) held_at_detection_ = truth_->Held();
+}
 
 Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
-  const std::vector<Truth::Tube> tubes = truth_.Tubes();
+  const std::vector<Truth::Tube> tubes = truth_ ? truth_->Tubes() : std::vector<Truth::Tube>();
+  if (!truth_ && attempts_ == 0) tubes_start_ = report.tubes_in_bin;
   const TrayCount tray = CountTray(tubes, tray_);
   std::vector<int> outside;
   const CellLayout layout;
@@ -101,7 +104,8 @@ Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
     }
   }
   const bool new_outside = outside.size() > outside_ids_.size();
-  const bool success = report.outcome == AttemptOutcome::kPlaced && added == 1 && !new_outside;
+  const bool believed = report.outcome == AttemptOutcome::kPlaced;
+  const bool success = believed && added == 1 && !new_outside;
   tray_ = tray;
   outside_ids_ = outside;
 
@@ -123,21 +127,26 @@ Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
                                                  : Json(nullptr)}};
   row["outcome"] = ToString(report.outcome);
   row["reason"] = report.reason;
-  row["success"] = success;
+  row["success"] = truth_ ? Json(success) : Json(nullptr);
   row["sim_s"] = Json{{"scan", report.sim_s.scan},
                       {"move", report.sim_s.move},
                       {"weigh", report.sim_s.weigh},
                       {"settle", report.sim_s.settle},
                       {"total", report.sim_s.total()}};
-  row["truth"] = Json{{"held", report.detection ? Json(held_at_detection_) : Json(nullptr)},
-                      {"placed_ids", tray_.placed_ids},
-                      {"outside_ids", outside_ids_},
-                      {"placement_error_mm", error_mm},
-                      {"placement_error_deg", error_deg}};
+  if (truth_) {
+    row["truth"] = Json{{"held", report.detection ? Json(held_at_detection_) : Json(nullptr)},
+                        {"placed_ids", tray_.placed_ids},
+                        {"outside_ids", outside_ids_},
+                        {"placement_error_mm", error_mm},
+                        {"placement_error_deg", error_deg}};
+  } else {
+    row["truth"] = nullptr;
+  }
   ++attempts_;
   successes_ += success;
-  if (success && report.attempt == 1) ++first_attempts_placed_;
-  if (success) ++picks_placed_;
+  const bool placed = truth_ ? success : believed;
+  if (placed && report.attempt == 1) ++first_attempts_placed_;
+  if (placed) ++picks_placed_;
   if (report.outcome == AttemptOutcome::kDropped) ++dropped_;
   rows_.push_back(row);
   return row;
@@ -154,7 +163,7 @@ Json RoundScorer::TimingRow(const AttemptReport& report, int round, double wall_
 }
 
 Json RoundScorer::Summary(const RoundReport& report, double sim_s) const {
-  const int placed = static_cast<int>(tray_.placed_ids.size());
+  const int placed = truth_ ? static_cast<int>(tray_.placed_ids.size()) : report.placed_believed;
   const auto interval = Wilson95(first_attempts_placed_, picks_placed_);
   Json out;
   out["schema"] = "tubetwin/summary/1";
@@ -167,17 +176,19 @@ Json RoundScorer::Summary(const RoundReport& report, double sim_s) const {
   const auto success = Wilson95(successes_, attempts_);
   out["success"] = Json{
       {"k", successes_}, {"n", attempts_}, {"wilson95", Json::array({success.low, success.high})}};
+  if (!truth_) out["success"] = nullptr;
   out["first_attempt"] = Json{{"k", first_attempts_placed_},
                               {"n", picks_placed_},
                               {"wilson95", Json::array({interval.low, interval.high})}};
-  out["emptied"] = placed == tubes_start_;
+  out["emptied"] = truth_ ? placed == tubes_start_ : report.end == RoundEnd::kEmpty;
   out["end_reason"] = ToString(report.end);
   out["end_detail"] = report.reason;
   out["placed_believed"] = report.placed_believed;
-  out["outside"] = outside_ids_.size();
+  out["outside"] = truth_ ? Json(outside_ids_.size()) : Json(nullptr);
   out["dropped"] = dropped_;
   out["sim_s"] = sim_s;
   out["sim_s_per_pick"] = picks_placed_ > 0 ? Json(sim_s / picks_placed_) : Json(nullptr);
+  if (!truth_) out["scored_by"] = "belief";
   return out;
 }
 

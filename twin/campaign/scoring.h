@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,11 +22,13 @@ struct TrayCount {
 /// that was placed before and has not left the tray: a new neighbour may make it rock.
 TrayCount CountTray(const std::vector<Truth::Tube>& tubes, const TrayCount& before);
 
-/// Scores attempts by truth while a round runs. The one place, with the round itself, that sees
-/// truth.
+/// Scores attempts while a round runs: by truth, or, of a cell without truth, by what the pipeline
+/// believes; `success` and `truth` of its rows are null then, and summaries say `scored_by`. The
+/// one place, with the round itself, that sees truth.
 class RoundScorer {
  public:
   RoundScorer(const TwinCell& cell, int tubes_start);
+  RoundScorer() = default;  ///< Of a cell without truth.
 
   /// What rows to come depend on: {placed_ids, arrived_ids, outside_ids}, and back.
   Json State() const;
@@ -41,8 +44,8 @@ class RoundScorer {
   Json Summary(const RoundReport& report, double sim_s) const;
 
  private:
-  Truth truth_;
-  int tubes_start_ = 0;
+  std::optional<Truth> truth_;
+  int tubes_start_ = 0;                         ///< Without truth: what the first look found.
   int placed_before_ = 0, outside_before_ = 0;  ///< Of a restored round.
   int held_at_detection_ = 0;
   TrayCount tray_;
