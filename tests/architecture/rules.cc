@@ -29,7 +29,8 @@ const std::map<std::string, std::vector<std::string>>& Rooms() {
       {"twin/cell", {"twin/render", "scenes", "hw_bridge/cell"}},
       {"twin/campaign",
        {"twin/cell", "twin/render", "planner/evaluator", "planner", "perception", "scenes"}},
-      {"twin/app", {"twin/campaign", "hw_bridge/drivers", "hw_bridge/emulators"}},
+      {"twin/live", {"twin/campaign", "hw_bridge/drivers", "hw_bridge/emulators"}},
+      {"twin/app", {"twin/live", "twin/campaign"}},
   };
   return rooms;
 }
@@ -64,7 +65,7 @@ struct ThirdParty {
 
 const std::vector<ThirdParty>& ThirdParties() {
   static const std::vector<std::string> kSockets = {"hw_bridge/drivers", "hw_bridge/emulators",
-                                                    "tests"};
+                                                    "twin/live", "tests"};
   static const std::vector<ThirdParty> list = {
       {"mujoco/",
        {"scenes/engine", "scenes", "planner/evaluator", "twin/render", "twin/cell", "twin/campaign",

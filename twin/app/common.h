@@ -71,6 +71,7 @@ void AddPlanVerb(CLI::App& app, Common& common);
 void AddEvaluateVerb(CLI::App& app, Common& common);
 void AddCampaignVerb(CLI::App& app, Common& common);
 void AddReproduceVerb(CLI::App& app, Common& common);
+void AddEmulateVerb(CLI::App& app, Common& common);
 void AddReplayVerb(CLI::App& app, Common& common);
 void AddRenderVerb(CLI::App& app, Common& common);
 void AddPartVerb(CLI::App& app, Common& common);

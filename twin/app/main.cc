@@ -32,6 +32,7 @@ int Run(int argc, char** argv) {
   AddEvaluateVerb(app, common);
   AddCampaignVerb(app, common);
   AddReproduceVerb(app, common);
+  AddEmulateVerb(app, common);
   AddReplayVerb(app, common);
   AddRenderVerb(app, common);
   AddPartVerb(app, common);

@@ -1,13 +1,19 @@
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/text.h"
+#include "hw_bridge/cell/replay_cell.h"
 #include "twin/app/common.h"
 #include "twin/campaign/round.h"
+#include "twin/live/dry_run.h"
+#include "twin/live/live_cell.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;
@@ -66,16 +72,64 @@ bool Holds(const Requirement& wanted, const Json& summary) {
 struct RunOptions {
   std::string scenario, pile, part, bin, cell, profile;
   std::vector<std::string> require;
-  bool video = false, record = false, force = false;
+  bool video = false, record = false, force = false, dry = false;
 };
+
+std::string FolderOf(const std::string& file) {
+  const fs::path parent = fs::path(file).parent_path();
+  return parent.empty() ? "." : parent.string();
+}
+
+/// Asks whoever sits at the terminal; nobody there is no word.
+Acknowledgement AskOperator(const std::string& what) {
+  if (::isatty(STDIN_FILENO) != 1) return Acknowledgement::kEnd;
+  std::fprintf(stderr,
+               "\ntubetwin: %s\nWhen the cause is gone and nobody is near the arm, type 'go on'; "
+               "anything else ends the round: ",
+               what.c_str());
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer == "go on" ? Acknowledgement::kGoOn : Acknowledgement::kEnd;
+}
+
+/// The round on whatever cell the scenario chooses.
+RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOptions& options) {
+  if (scenario.cell.IsTwin() && !run.dry) return RunRound(scenario, options);
+  scenario.cell.ValidateOrThrow();
+  options.acknowledge = AskOperator;
+  const std::string cell_folder = FolderOf(run.cell.empty() ? run.scenario : run.cell);
+  if (scenario.cell.arm.driver == "replay") {
+    const std::string path =
+        (fs::path(cell_folder) / scenario.cell.recording).lexically_normal().string();
+    ReplayCell replay{CellRecording(path)};
+    replay.cell().safety = ScenarioSafety(scenario);
+    try {
+      return RunCellRound(replay.cell(), scenario, options);
+    } catch (const ReplayOver& over) {
+      throw Error(ErrorKind::kBadData, path + ": " + over.what() +
+                                           "; this pipeline does something else than the recorded "
+                                           "one (`tubetwin replay --verify` shows what), or the "
+                                           "recording was cut short");
+    }
+  }
+  LiveCell live(scenario, options.scenario_folder, cell_folder,
+                run.dry ? CellPurpose::kLook : CellPurpose::kRun, options.parallelism);
+  if (!run.dry) return RunCellRound(live.cell(), scenario, options);
+  DryRunCell dry(live.cell());
+  int attempts = 0;  // The stop is asked for before each: one is enough to see what would be done.
+  const auto stop_requested = options.stop_requested;
+  options.stop_requested = [&attempts, stop_requested] {
+    return attempts++ > 0 || stop_requested();
+  };
+  return RunCellRound(dry.cell(), scenario, options);
+}
 
 Scenario RunScenario(const RunOptions& run, const Common& common, std::string& folder) {
   std::vector<std::string> files;
   if (!run.scenario.empty()) files.push_back(run.scenario);
   if (!run.cell.empty()) files.push_back(run.cell);
   Scenario scenario = LoadScenario(files, common, run.profile);
-  const fs::path parent = fs::path(run.scenario).parent_path();
-  folder = parent.empty() ? "." : parent.string();
+  folder = FolderOf(run.scenario);
   if (!run.pile.empty()) scenario.pile.file = fs::absolute(run.pile).string();
   if (!run.part.empty()) scenario.pile.part = run.part;
   if (!run.bin.empty()) {
@@ -101,7 +155,7 @@ int Run(const RunOptions& run, const Common& common) {
   std::signal(SIGTERM, [](int) { g_stop = 1; });
   std::signal(SIGINT, [](int) { g_stop = 1; });
   options.stop_requested = [] { return g_stop != 0; };
-  const RoundResult result = RunRound(scenario, options);
+  const RoundResult result = RunAnywhere(run, scenario, options);
 
   const Json& s = result.summary;
   if (common.json) {
@@ -113,7 +167,12 @@ int Run(const RunOptions& run, const Common& common) {
                 s["end_reason"].get<std::string>().c_str(),
                 s["end_detail"].get<std::string>().c_str());
   }
-  if (result.interrupted) return static_cast<int>(ErrorKind::kInterrupted);
+  if (result.faulted) {
+    std::fprintf(stderr, "tubetwin: the round ended with a fault: %s\n",
+                 s["end_detail"].get<std::string>().c_str());
+    return static_cast<int>(ErrorKind::kDevice);
+  }
+  if (result.interrupted && !run.dry) return static_cast<int>(ErrorKind::kInterrupted);
   int code = 0;
   for (const Requirement& wanted : requirements) {
     if (!Holds(wanted, s)) {
@@ -147,6 +206,8 @@ void AddRunVerb(CLI::App& app, Common& common) {
   verb->add_option("--require", run->require,
                    "Exit with 1 unless 'KEY>=VALUE' of summary.json holds")
       ->allow_extra_args(false);
+  verb->add_flag("--dry-run", run->dry,
+                 "Scan from where the scanner is, plan and check one attempt, move nothing");
   verb->add_flag("--force", run->force, "Replace the rows of another configuration");
   AddCommonOptions(*verb, common, "Result folder", true);
   verb->callback([run, &common] { common.action = [run, &common] { return Run(*run, common); }; });

@@ -17,7 +17,6 @@ namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
 
-
 /// What a campaign file says besides its arms.
 struct CampaignKeys {
   Campaign& campaign;

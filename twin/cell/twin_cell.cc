@@ -50,6 +50,7 @@ TwinCell::TwinCell(const Pile& pile, const TwinCellOptions& options)
     : impl_(std::make_unique<Impl>(pile, options)) {}
 TwinCell::~TwinCell() = default;
 
+ServoArm& TwinCell::servo_arm() { return impl_->arm; }
 Cell& TwinCell::cell() { return impl_->cell; }
 
 void TwinCell::SetFrameObserver(std::function<void()> observer) {

@@ -7,6 +7,7 @@
 #include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/base/parallel.h"
 #include "hw_bridge/cell/cell.h"
+#include "hw_bridge/cell/servo_arm.h"
 #include "models/physics.h"
 #include "scenes/pile.h"
 #include "twin/render/scan_geometry.h"
@@ -29,6 +30,8 @@ class TwinCell {
   TwinCell(const Pile& pile, const TwinCellOptions& options);
   ~TwinCell();
   Cell& cell();
+  /// The same arm as cell().arm, for an emulated controller in place of it.
+  ServoArm& servo_arm();
 
   /// Called after every 1/30 s of simulated time, at exactly k/30 s rounded to the step; for
   /// recordings. Must not change the world.

@@ -1,0 +1,93 @@
+#include "twin/live/emulated_cell.h"
+
+#include <optional>
+
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+#include "twin/campaign/twin_setup.h"
+#include "twin/live/fault_script.h"
+
+namespace tubetwin {
+namespace {
+
+/// An emulated cell with one tube and no client.
+struct Bench {
+  explicit Bench(const std::string& listen = "127.0.0.1") {
+    scenario.pile.count = 1;
+    const Pile pile = ScenarioPile(scenario, ".");
+    twin.emplace(pile, ScenarioTwin(scenario, ScenarioPhysics(scenario, pile.part), {1}));
+    cell.emplace(*twin, scenario, EmulationPlaces{listen, true, folder.path()});
+  }
+  TemporaryFolder folder;
+  Scenario scenario;
+  std::optional<TwinCell> twin;
+  std::optional<EmulatedCell> cell;
+};
+
+}  // namespace
+
+TEST_CASE("A scripted fault begins at its time or moment and is undone after its duration",
+          "[unit]") {
+  Bench bench;
+  ScriptedFault timed;
+  timed.at_s = 0.010;
+  timed.for_s = 0.005;
+  timed.device = "arm.state";
+  timed.action = "freeze";
+  ScriptedFault at_moment;
+  at_moment.on = "scan";
+  at_moment.nth = 2;
+  at_moment.delay_s = 0.003;
+  at_moment.device = "arm";
+  at_moment.action = "emergency_stop";
+  FaultScript script({timed, at_moment});
+  std::vector<std::string> said;
+  for (int ms = 1; ms <= 30; ++ms) {
+    bench.cell->Step();
+    if (ms == 18 || ms == 20) script.Hear("scan", bench.cell->now());
+    for (const std::string& line : script.Act(*bench.cell, bench.cell->now())) {
+      said.push_back(std::to_string(ms) + " " + line);
+    }
+    CHECK(bench.cell->arm().state_link().freeze == (ms >= 10 && ms < 15));
+    CHECK(bench.cell->arm().controller().emergency_stop() == (ms >= 23));
+  }
+  CHECK(said == std::vector<std::string>{"10 arm.state freeze", "15 arm.state freeze undone",
+                                         "23 arm emergency_stop"});
+  CHECK(script.done() == 2);
+}
+
+TEST_CASE("Every action can be done and undone at any time", "[unit]") {
+  Bench bench;
+  for (const std::string& device : FaultDevices()) {
+    for (const std::string& action : FaultActions(device)) {
+      CAPTURE(device, action);
+      ScriptedFault fault;
+      fault.device = device;
+      fault.action = action;
+      fault.value = device == "gripper" ? 9 : action == "refuse" ? 3011 : 1;
+      ApplyFault(*bench.cell, fault, false);
+      for (int i = 0; i < 3; ++i) bench.cell->Step();
+      ApplyFault(*bench.cell, fault, true);
+      for (int i = 0; i < 3; ++i) bench.cell->Step();
+    }
+  }
+  CHECK_FALSE(bench.cell->arm().motion_link().freeze);
+  CHECK_FALSE(bench.cell->arm().controller().emergency_stop());
+}
+
+TEST_CASE("A cell file arms the arm of a loopback address only, and names every port", "[unit]") {
+  {
+    Bench bench;
+    const Scenario reaching = bench.cell->Reaching();
+    CHECK(reaching.cell.arm.armed);
+    CHECK(reaching.cell.arm.host == "127.0.0.1");
+    CHECK(reaching.cell.arm.motion_port == bench.cell->arm().motion_port());
+    CHECK(reaching.cell.gripper.port == bench.cell->gripper().port());
+    CHECK(reaching.cell.wrist.port == bench.cell->wrist().port());
+    CHECK_FALSE(reaching.cell.HasTwin());
+  }
+  Bench bench("0.0.0.0");
+  CHECK_FALSE(bench.cell->Reaching().cell.arm.armed);
+}
+
+}  // namespace tubetwin

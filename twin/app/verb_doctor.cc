@@ -1,0 +1,147 @@
+#include <cstdio>
+#include <fstream>
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
+#include "hw_bridge/base/text.h"
+#include "hw_bridge/cell/wall_clock.h"
+#include "scenes/engine/engine_error.h"
+#include "twin/app/common.h"
+#include "twin/live/live_cell.h"
+#include "twin/render/gl/egl_context.h"
+
+namespace tubetwin {
+namespace {
+
+struct Finding {
+  std::string what, state, fix;  ///< Empty fix: fine.
+};
+
+std::vector<Finding> Examine() {
+  std::vector<Finding> out;
+  out.push_back({"physics engine", "MuJoCo " + EngineVersion(), ""});
+  try {
+    const EglContext context;
+    out.push_back({"images without a display", "EGL", ""});
+  } catch (const Error& e) {
+    out.push_back({"images without a display", e.what(),
+                   "apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri"});
+  }
+  std::ifstream cpu("/proc/cpuinfo");
+  std::string line;
+  bool avx = false;
+  while (std::getline(cpu, line)) avx |= line.find(" avx ") != std::string::npos;
+  out.push_back(
+      {"processor",
+       std::to_string(Parallelism::All().threads) + " threads, AVX " + (avx ? "yes" : "no"),
+       avx ? "" : "MuJoCo's library needs a processor with AVX"});
+  out.push_back({"parts", Join(PartNames()), ""});
+  return out;
+}
+
+Finding Look(const std::string& what, const std::string& driver, const char* fix,
+             const std::function<std::string()>& read) {
+  if (driver == "twin" || driver == "replay") return {what, driver, ""};
+  try {
+    return {what, driver + ": " + read(), ""};
+  } catch (const Error& e) {
+    return {what, e.what(), fix};
+  }
+}
+
+std::string Text(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string Said(const ArmState& state) {
+  std::string out = std::string(ToString(state.mode)) + ", joints";
+  for (double q : state.q) out += Text(" %.2f", Degrees(q));
+  return out + " degrees" + (state.fault.empty() ? "" : ", " + state.fault);
+}
+
+std::string Said(const GripperState& state) {
+  return std::string(state.activated ? "activated" : "not activated") +
+         Text(", %.1f mm open", 1e3 * state.opening_m) + ", fault code " +
+         std::to_string(state.fault);
+}
+
+std::string Said(const WrenchSample& sample) {
+  std::string out = "force";
+  for (double f : sample.wrench_K.force_N) out += Text(" %.2f", f);
+  out += " N, torque";
+  for (double t : sample.wrench_K.torque_Nm) out += Text(" %.3f", t);
+  return out + " N m" + (sample.saturated ? ", saturated" : "");
+}
+
+/// Every device of the scenario's cell, read without moving anything.
+std::vector<Finding> ExamineCell(const Scenario& scenario, const std::string& folder) {
+  scenario.cell.ValidateOrThrow();
+  const CellChoice& cell = scenario.cell;
+  WallClock clock(scenario.rate);
+  std::vector<Finding> out;
+  out.push_back(Look("arm", cell.arm.driver,
+                     "switch the controller on, start its job INIT_ROS, check host and ports in "
+                     "[cell.arm]",
+                     [&] {
+                       const auto arm = ConnectArm(scenario, Hc10(), clock, CellPurpose::kLook);
+                       return Said(arm->State()) +
+                              (cell.arm.armed ? ", armed in the cell file" : "");
+                     }));
+  out.push_back(Look("gripper", cell.gripper.driver, "check power, cable and [cell.gripper]", [&] {
+    return Said(ConnectGripper(scenario, clock, CellPurpose::kLook)->State());
+  }));
+  out.push_back(Look("force/torque sensor", cell.wrist.driver,
+                     "check power, address and [cell.wrist]; counts must be those of its page",
+                     [&] { return Said(ConnectWrist(scenario, clock)->Read()); }));
+  out.push_back(Look("scanner", cell.scanner.driver,
+                     "make the folder, or mount the share, that [cell.scanner] path names", [&] {
+                       ConnectScanner(scenario, folder, [] { return RigidTransform::Identity(); });
+                       return std::string("its folder can be used");
+                     }));
+  return out;
+}
+
+int Doctor(const std::string& cell_file, const Common& common) {
+  std::vector<Finding> findings;
+  if (cell_file.empty()) {
+    findings = Examine();
+  } else {
+    const auto slash = cell_file.rfind('/');
+    findings = ExamineCell(LoadScenario({cell_file}, common),
+                           slash == std::string::npos ? "." : cell_file.substr(0, slash + 1));
+  }
+  int missing = 0;
+  Json json = Json::array();
+  for (const Finding& f : findings) {
+    missing += !f.fix.empty();
+    json.push_back(Json{{"what", f.what}, {"state", f.state}, {"fix", f.fix}});
+    if (!common.json) {
+      std::printf("%-26s %s%s%s\n", f.what.c_str(), f.state.c_str(),
+                  f.fix.empty() ? "" : "\n    fix: ", f.fix.c_str());
+    }
+  }
+  if (common.json) std::printf("%s\n", json.dump(2).c_str());
+  return missing == 0 ? 0 : static_cast<int>(ErrorKind::kDevice);
+}
+
+}  // namespace
+
+void AddDoctorVerb(CLI::App& app, Common& common) {
+  CLI::App* verb = app.add_subcommand(
+      "doctor",
+      "Example: tubetwin doctor --cell cell.toml\n\nWhat is missing on this machine, with the fix; "
+      "or, with a cell file, what each of its devices says. Moves nothing.");
+  auto cell_file = std::make_shared<std::string>();
+  verb->add_option("--cell", *cell_file, "Cell file (TOML): read its devices");
+  AddCommonOptions(*verb, common, "", false);
+  verb->callback([cell_file, &common] {
+    common.action = [cell_file, &common] { return Doctor(*cell_file, common); };
+  });
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,101 @@
+#include "twin/live/dry_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tubetwin {
+namespace {
+
+/// Follows trajectories exactly, and refuses what a real arm would.
+class DryArm : public Arm {
+ public:
+  DryArm(const CellClock& clock, const Arm& real) : clock_(clock), q_(real.State().q) {}
+
+  ArmState State() const override {
+    ArmState state;
+    state.time = clock_.Now();
+    state.q = q_;
+    if (path_.points.empty()) return state;
+    state.planned_s = path_.duration_s();
+    state.progress_s = std::min(Seconds(clock_.Now() - began_), end_s_);
+    const TrajectoryPoint point = Sample(path_, state.progress_s);
+    const bool moves = state.progress_s < end_s_;
+    state.q = point.q;
+    if (moves) state.qd = point.qd;
+    state.mode = moves ? ArmMode::kMoving : ArmMode::kReady;
+    state.done = state.progress_s >= state.planned_s;
+    return state;
+  }
+  CommandResult Start(const CheckedTrajectory& trajectory) override {
+    const ArmState now = State();
+    if (now.mode != ArmMode::kReady) return Rejected("a trajectory still runs");
+    if ((now.q - trajectory.trajectory().points.front().q).cwiseAbs().maxCoeff() > Radians(0.2)) {
+      return Rejected("the first point is more than 0.2 degrees away");
+    }
+    path_ = trajectory.trajectory();
+    end_s_ = path_.duration_s();
+    began_ = clock_.Now();
+    return {};
+  }
+  CommandResult Append(const CheckedTrajectory&) override {
+    return Rejected("a dry run appends nothing");
+  }
+  void Stop(StopKind) override { end_s_ = State().progress_s; }
+  void SetPayload(double, const Vector3&) override {}
+
+ private:
+  static CommandResult Rejected(const char* why) { return {CommandResult::Status::kRejected, why}; }
+  const CellClock& clock_;
+  JointVector q_;
+  JointTrajectory path_;
+  double end_s_ = 0.0;
+  TimeNs began_{0};
+};
+
+/// Arrives wherever it is sent.
+class DryGripper : public Gripper {
+ public:
+  DryGripper(const CellClock& clock, const Gripper& real) : clock_(clock) {
+    from_m_ = to_m_ = real.State().opening_m;
+  }
+  void Command(const GripperCommand& command) override {
+    from_m_ = State().opening_m;
+    to_m_ = command.opening_m;
+    speed_m_s_ = command.speed_m_s;
+    began_ = clock_.Now();
+  }
+  GripperState State() const override {
+    GripperState state;
+    state.time = clock_.Now();
+    state.requested_m = to_m_;
+    const double gone_m = speed_m_s_ * Seconds(clock_.Now() - began_);
+    const bool there = gone_m >= std::abs(to_m_ - from_m_);
+    state.opening_m = there ? to_m_ : from_m_ + std::copysign(gone_m, to_m_ - from_m_);
+    state.object = there ? GripperObject::kAtPosition : GripperObject::kMoving;
+    return state;
+  }
+
+ private:
+  const CellClock& clock_;
+  double from_m_ = 0.085, to_m_ = 0.085, speed_m_s_ = 0.1;
+  TimeNs began_{0};
+};
+
+}  // namespace
+
+struct DryRunCell::Impl {
+  explicit Impl(Cell& real)
+      : arm(real.clock, real.arm),
+        gripper(real.clock, real.gripper),
+        cell{real.clock,     arm,         gripper,  real.wrist, real.scanner,
+             real.arm_model, real.layout, real.bin, real.safety} {}
+  DryArm arm;
+  DryGripper gripper;
+  Cell cell;
+};
+
+DryRunCell::DryRunCell(Cell& cell) : impl_(std::make_unique<Impl>(cell)) {}
+DryRunCell::~DryRunCell() = default;
+Cell& DryRunCell::cell() { return impl_->cell; }
+
+}  // namespace tubetwin

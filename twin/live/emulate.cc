@@ -1,0 +1,119 @@
+#include "twin/live/emulate.h"
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/base/files.h"
+#include "hw_bridge/base/json.h"
+#include "hw_bridge/cell/wall_clock.h"
+#include "twin/campaign/twin_setup.h"
+#include "twin/live/emulated_cell.h"
+#include "twin/live/fault_script.h"
+
+namespace tubetwin {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A pause of the machine shorter than this is caught up; clients notice nothing worse than jitter.
+constexpr TimeNs kMostLag = std::chrono::milliseconds(40);
+
+/// One line per event, each written at once: what is there after a kill is true.
+class EventLog {
+ public:
+  EventLog(const std::string& path, const EmulatedCell& cell)
+      : file_(path, std::ios::trunc), path_(path), cell_(cell) {
+    if (!file_) throw Error(ErrorKind::kCannotCreate, path + ": cannot be written");
+  }
+  void Write(const char* kind, const std::string& what) {
+    file_ << Json{{"at_s", Seconds(cell_.now())}, {kind, what}}.dump() << '\n';
+    file_.flush();
+    if (!file_) throw Error(ErrorKind::kIo, path_ + ": writing failed (disk full?)");
+  }
+
+ private:
+  std::ofstream file_;
+  std::string path_;
+  const EmulatedCell& cell_;
+};
+
+/// What `run --cell` needs of the scenario to find this cell.
+std::string CellFile(const EmulatedCell& cell, const Scenario& scenario, const Pile& pile) {
+  Scenario reaching = cell.Reaching();
+  reaching.bin.size_m.assign(pile.bin.size_m.begin(), pile.bin.size_m.end());
+  reaching.bin.mesh.clear();
+  reaching.bin.mesh_units.clear();
+  reaching.part.name = scenario.pile.part.empty() && scenario.part.name.empty()
+                           ? pile.part.name
+                           : ScenarioPartName(scenario);
+  return WriteToml(
+      [&](ConfigVisitor& v) {
+        v.Field("rate", "times the wall's time", reaching.rate);
+        v.Section("bin", "the bin", reaching.bin);
+        v.Section("part", "the part", reaching.part);
+        v.Section("calibration", "how the tools hang on the flange", reaching.calibration);
+        v.Section("cell", "which devices", reaching.cell);
+      },
+      false);
+}
+
+bool Ended(const EmulateOptions& options, const EmulatedCell& cell) {
+  if (options.for_s > 0.0 && Seconds(cell.now()) >= options.for_s) return true;
+  return options.stop_requested && options.stop_requested();
+}
+
+}  // namespace
+
+EmulateResult Emulate(const Scenario& scenario, const EmulateOptions& options) {
+  FaultScript script(options.faults_file.empty() ? std::vector<ScriptedFault>()
+                                                 : ReadFaultScript(options.faults_file));
+  const fs::path out = fs::absolute(options.out_folder);
+  MakeFolder(out.string());
+  // Whoever waits for it must not find that of an earlier emulation.
+  fs::remove(out / "cell.toml");
+  fs::remove(out / "world.json");
+  const Pile asked = ScenarioPile(scenario, options.scenario_folder);
+  const RoundPhysics physics = ScenarioPhysics(scenario, asked.part);
+  const Pile pile = StartPile(scenario, asked, physics);
+  SavePile(pile, (out / "start.pile.json").string());
+  TwinCell twin(pile, ScenarioTwin(scenario, physics, options.parallelism));
+  EmulatedCell cell(twin, scenario, {options.listen, options.any_ports, out.string()});
+  EventLog log((out / "events.jsonl").string(), cell);
+  cell.OnMoment([&](const std::string& moment) {
+    log.Write("event", moment);
+    script.Hear(moment, cell.now());
+  });
+  WriteFileAtomically((out / "cell.toml").string(), CellFile(cell, scenario, pile));
+  if (options.progress) options.progress((out / "cell.toml").string());
+
+  const auto began = std::chrono::steady_clock::now();
+  Pace pace(scenario.rate, FromSeconds(Seconds(kMostLag) * scenario.rate));
+  while (!Ended(options, cell)) {
+    const TimeNs next = cell.now() + kControlPeriod;
+    if (pace.Due(cell.now()) < next) {
+      cell.Poll();
+      std::this_thread::sleep_for(pace.Until(next));
+      continue;
+    }
+    cell.Step();
+    for (const std::string& line : script.Act(cell, cell.now())) {
+      log.Write("fault", line);
+      if (options.progress) options.progress(line);
+    }
+  }
+  WriteJsonFile(WhatLiesWhere(twin), (out / "world.json").string());
+  EmulateResult result;
+  result.cell_s = Seconds(cell.now());
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  result.overruns = pace.overruns();
+  result.worst_lag_s = Seconds(pace.worst_lag());
+  result.stretched_s = Seconds(pace.given_in());
+  result.faults = script.done();
+  return result;
+}
+
+}  // namespace tubetwin

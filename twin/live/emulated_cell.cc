@@ -1,0 +1,152 @@
+#include "twin/live/emulated_cell.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <asio.hpp>
+
+namespace tubetwin {
+namespace {
+
+namespace fs = std::filesystem;
+
+ArmEmulatorConfig ArmAt(const CellChoice::Arm& arm, const EmulationPlaces& places) {
+  ArmEmulatorConfig config;
+  config.listen = places.listen;
+  config.motion_port = places.any_ports ? 0 : arm.motion_port;
+  config.state_port = places.any_ports ? 0 : arm.state_port;
+  config.io_port = places.any_ports ? 0 : arm.io_port;
+  config.hses_port = places.any_ports ? 0 : arm.hses_port;
+  config.pulses_per_degree = arm.pulses_per_degree;
+  return config;
+}
+
+GripperEmulatorConfig GripperAt(const CellChoice::Gripper& gripper, const EmulationPlaces& places) {
+  GripperEmulatorConfig config;
+  config.listen = places.listen;
+  config.port = places.any_ports ? 0 : gripper.port;
+  config.slave = gripper.slave;
+  if (gripper.driver == "modbus_rtu") {
+    config.transport = "rtu";
+    config.device = (fs::path(places.folder) / "gripper.tty").string();
+  }
+  return config;
+}
+
+WristEmulatorConfig WristAt(const CellChoice::Wrist& wrist, const EmulationPlaces& places) {
+  WristEmulatorConfig config;
+  config.listen = places.listen;
+  config.port = places.any_ports ? 0 : wrist.port;
+  config.http_port = places.any_ports ? 0 : wrist.http_port;
+  config.counts_per_N = wrist.counts_per_N;
+  config.counts_per_Nm = wrist.counts_per_Nm;
+  return config;
+}
+
+ScannerFolderConfig ScannerAt(const EmulationPlaces& places) {
+  ScannerFolderConfig config;
+  config.path = (fs::path(places.folder) / "scans").string();
+  return config;
+}
+
+}  // namespace
+
+struct EmulatedCell::Impl {
+  Impl(TwinCell& of, const Scenario& given, const EmulationPlaces& at)
+      : twin(of),
+        scenario(given),
+        places(at),
+        arm(io, twin.servo_arm(), twin.cell().arm_model, ArmAt(given.cell.arm, at)),
+        gripper(io, twin.cell().gripper, GripperAt(given.cell.gripper, at)),
+        wrist(io, twin.cell().wrist, WristAt(given.cell.wrist, at)),
+        scanner(twin.cell().scanner, ScannerAt(at)),
+        moments(twin.cell().arm_model, twin.cell().layout, twin.cell().bin) {}
+
+  void Look() {
+    const bool moves = arm.controller().moving();
+    if (moves != moved && hear) hear(moves ? "arm moves" : "arm rests");
+    moved = moves;
+    CycleMoments::Look look;
+    look.q = twin.servo_arm().Servo().q;
+    look.fingers = twin.cell().gripper.State();
+    look.fingers_in_use = gripper.controller().Status().activation == GripperActivation::kDone;
+    look.scans = scanner.triggers();
+    for (const std::string& moment : moments.After(look)) {
+      if (hear) hear(moment);
+    }
+  }
+
+  TwinCell& twin;
+  Scenario scenario;
+  EmulationPlaces places;
+  asio::io_context io;
+  ArmEmulator arm;
+  GripperEmulator gripper;
+  WristEmulator wrist;
+  ScannerFolderEmulator scanner;
+  CycleMoments moments;
+  std::function<void(const std::string&)> hear;
+  bool moved = false;
+};
+
+EmulatedCell::EmulatedCell(TwinCell& twin, const Scenario& scenario, const EmulationPlaces& places)
+    : impl_(std::make_unique<Impl>(twin, scenario, places)) {}
+EmulatedCell::~EmulatedCell() = default;
+
+void EmulatedCell::Poll() {
+  impl_->io.restart();
+  impl_->io.poll();
+}
+
+void EmulatedCell::Step() {
+  Poll();
+  CellClock& clock = impl_->twin.cell().clock;
+  clock.AdvanceTo(clock.Now() + kControlPeriod);
+  const TimeNs now = clock.Now();
+  for (Emulator* emulator :
+       {static_cast<Emulator*>(&impl_->arm), static_cast<Emulator*>(&impl_->gripper),
+        static_cast<Emulator*>(&impl_->wrist), static_cast<Emulator*>(&impl_->scanner)}) {
+    emulator->Tick(now);
+  }
+  impl_->Look();
+}
+
+TimeNs EmulatedCell::now() const { return impl_->twin.cell().clock.Now(); }
+
+void EmulatedCell::OnMoment(std::function<void(const std::string&)> hear) {
+  impl_->hear = std::move(hear);
+}
+
+ArmEmulator& EmulatedCell::arm() { return impl_->arm; }
+GripperEmulator& EmulatedCell::gripper() { return impl_->gripper; }
+WristEmulator& EmulatedCell::wrist() { return impl_->wrist; }
+ScannerFolderEmulator& EmulatedCell::scanner() { return impl_->scanner; }
+const CycleMoments& EmulatedCell::moments() const { return impl_->moments; }
+
+Scenario EmulatedCell::Reaching() const {
+  Scenario out = impl_->scenario;
+  CellChoice& cell = out.cell;
+  // A loopback address is this emulation and nothing else; no other arm is armed by a program.
+  const bool loopback = asio::ip::make_address(impl_->places.listen).is_loopback();
+  cell.arm.driver = "simple_message";
+  cell.arm.armed = loopback;
+  cell.arm.motion_port = impl_->arm.motion_port();
+  cell.arm.state_port = impl_->arm.state_port();
+  cell.arm.io_port = impl_->arm.io_port();
+  cell.arm.hses_port = impl_->arm.hses_port();
+  if (cell.gripper.driver == "modbus_rtu") {
+    cell.gripper.device = impl_->gripper.device();
+  } else {
+    cell.gripper.driver = "modbus_tcp";
+    cell.gripper.port = impl_->gripper.port();
+  }
+  cell.wrist.driver = "rdt";
+  cell.wrist.port = impl_->wrist.port();
+  cell.wrist.http_port = impl_->wrist.http_port();
+  cell.scanner.driver = "folder";
+  cell.scanner.path = impl_->scanner.path();
+  cell.arm.host = cell.gripper.host = cell.wrist.host = cell.scanner.host = impl_->places.listen;
+  return out;
+}
+
+}  // namespace tubetwin
