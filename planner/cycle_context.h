@@ -124,6 +124,12 @@ void PutBack(CycleContext& context);
 /// kPlaced, or kDropped when the tube was lost on the way.
 AttemptOutcome Place(CycleContext& context, const Polyline& line_E);
 
+/// Where no tube can be grasped: pushes one to where it can be and puts that into the report.
+/// Closed fingers press on it until the wrist feels it, drag it along under a force limit and come
+/// up again. The tube's id, or nothing when no tube can be pushed or it was done often enough.
+std::optional<int> TryNudge(CycleContext& context, const TubeScene& scene,
+                            const std::vector<OrganizedCloud>& views);
+
 /// After a stop or fault of the arm: asks the operator, if there is one, and goes on only on their
 /// word: ready again, straight up, what is held back into the bin.
 Acknowledgement GoOnAfterStop(CycleContext& context, const MoveFailure& failure);

@@ -1,6 +1,7 @@
 #include "planner/cycle_report.h"
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 
 namespace tubetwin {
 
@@ -69,6 +70,25 @@ const char* ToString(RoundEnd end) {
       return "stored";
   }
   return "fault";
+}
+
+Json ToJson(const NudgeReport& nudge) {
+  return Json{{"tube", nudge.tube},         {"direction", ToJson(nudge.direction_N)},
+              {"travel_m", nudge.travel_m}, {"contact", nudge.contact},
+              {"press_N", nudge.press_N},   {"stopped", nudge.stopped},
+              {"rejected", nudge.rejected}};
+}
+
+NudgeReport NudgeReportFromJson(const JsonView& view) {
+  NudgeReport nudge;
+  nudge.tube = static_cast<int>(view.Field("tube").AsInteger());
+  nudge.direction_N = view.Field("direction").AsVector3();
+  nudge.travel_m = view.Field("travel_m").AsNumber();
+  nudge.contact = view.Field("contact").AsBool();
+  nudge.press_N = view.Field("press_N").AsNumber();
+  nudge.stopped = view.Field("stopped").AsBool();
+  nudge.rejected = view.Field("rejected").AsString();
+  return nudge;
 }
 
 }  // namespace tubetwin

@@ -20,6 +20,17 @@ ResolutionStrategy ResolutionStrategyFromName(const std::string& name);
 enum class AttemptOutcome { kPlaced, kPutBack, kNothingHeld, kDropped, kNoPlan, kFault };
 const char* ToString(AttemptOutcome outcome);
 
+/// A tube that was pushed to where it can be grasped, because none could be.
+struct NudgeReport {
+  int tube = 0;
+  Vector3 direction_N = Vector3::Zero();  ///< Horizontal unit vector.
+  double travel_m = 0.0;                  ///< Of the fingers while they were down, all strokes.
+  bool contact = false;                   ///< The wrist felt the tube on the way down.
+  double press_N = 0.0;                   ///< Largest load on the wrist once the fingers pressed.
+  bool stopped = false;                   ///< The force limit ended it.
+  std::string rejected;                   ///< Why a motion of it was not run; empty: all were.
+};
+
 /// One attempt to pick one tube: what was seen, decided, felt and done. Nothing in it comes from
 /// truth.
 struct AttemptReport {
@@ -28,6 +39,7 @@ struct AttemptReport {
   std::optional<PickPlan> plan;             ///< None: no plan was found.
   std::vector<Rejection> rejections;        ///< Why others were not taken.
   std::string reason;                       ///< Of the outcome, for people.
+  std::vector<NudgeReport> nudges;          ///< Before the plan was found, or in vain.
   std::optional<Detection> first_weighing;  ///< After the 3 cm lift.
   std::optional<Detection> detection;       ///< The decision after the whole motion.
   bool resolution_used = false;
@@ -48,6 +60,10 @@ struct AttemptReport {
 /// Why a round ended.
 enum class RoundEnd { kEmpty, kNoPlan, kAttemptLimit, kFault, kInterrupted, kStored };
 const char* ToString(RoundEnd end);
+
+/// As in picks.jsonl.
+Json ToJson(const NudgeReport& nudge);
+NudgeReport NudgeReportFromJson(const JsonView& view);
 
 struct RoundReport {
   RoundEnd end = RoundEnd::kEmpty;

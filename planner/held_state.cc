@@ -76,7 +76,10 @@ Json ToJson(const HeldState& state) {
   TT_CHECK(report.plan && report.detection && report.first_weighing);
   Json placed = Json::array();
   for (const Polyline& line_T : state.placed_T) placed.push_back(ToJson(line_T));
+  Json nudges = Json::array();
+  for (const NudgeReport& nudge : report.nudges) nudges.push_back(ToJson(nudge));
   return Json{{"attempt", report.attempt},
+              {"nudges", nudges},
               {"tubes_in_bin", report.tubes_in_bin},
               {"plan", PlanJson(*report.plan)},
               {"first_weighing", DetectionJson(*report.first_weighing)},
@@ -97,6 +100,11 @@ HeldState HeldStateFromJson(const JsonView& view) {
   AttemptReport& report = state.report;
   report.attempt = static_cast<int>(view.Field("attempt").AsInteger());
   report.tubes_in_bin = static_cast<int>(view.Field("tubes_in_bin").AsInteger());
+  if (const auto nudges = view.Optional("nudges")) {
+    for (std::size_t i = 0; i < nudges->Size(); ++i) {
+      report.nudges.push_back(NudgeReportFromJson(nudges->Item(i)));
+    }
+  }
   report.plan = PlanFromJson(view.Field("plan"));
   report.first_weighing = DetectionFromJson(view.Field("first_weighing"));
   report.detection = DetectionFromJson(view.Field("detection"));

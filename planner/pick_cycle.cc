@@ -316,18 +316,27 @@ std::optional<RoundReport> Attempt(Round& round) {
   CycleContext& c = round.context();
   round.BeginAttempt();
   const TubeScene& scene = round.LookSurely();
-  if (scene.tubes.empty()) {
-    const bool empty = scene.bin_content == BinContent::kEmpty;
-    return round.EndOfRound(empty ? RoundEnd::kEmpty : RoundEnd::kNoPlan, scene.bin_content_reason);
-  }
-  const std::optional<PickPlan> plan = round.Decide(scene);
-  if (!plan) {
+  std::optional<PickPlan> plan;
+  for (;;) {
+    if (scene.tubes.empty()) {
+      const bool empty = scene.bin_content == BinContent::kEmpty;
+      if (!c.report.nudges.empty()) {
+        round.EndAttempt(AttemptOutcome::kNoPlan, "the nudged tube is not seen any more");
+      }
+      return round.EndOfRound(empty ? RoundEnd::kEmpty : RoundEnd::kNoPlan,
+                              scene.bin_content_reason);
+    }
+    plan = round.Decide(scene);
+    if (plan) break;
     if (!round.looker().all_fresh()) {
       round.looker().MarkAll();  // Look everywhere before giving up.
-      return std::nullopt;
+    } else if (const auto nudged = TryNudge(c, scene, round.looker().views())) {
+      round.looker().MarkAround(*nudged);
+    } else {
+      round.EndAttempt(AttemptOutcome::kNoPlan, "no plan for any tube");
+      return round.EndOfRound(RoundEnd::kNoPlan, round.WhyNoPlan());
     }
-    round.EndAttempt(AttemptOutcome::kNoPlan, "no plan for any tube");
-    return round.EndOfRound(RoundEnd::kNoPlan, round.WhyNoPlan());
+    round.LookSurely();
   }
   c.report.plan = *plan;
   const Polyline line_E = round.HeldLine(scene, *plan);

@@ -63,6 +63,15 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
            classes, {"crossings", "occluded_joints"});
   v.Field("exclude_free", "free tubes stay but may not be chosen", exclude_free);
   v.Field("lift_speed_m_s", "speed of the motions after the grasp", lift_speed_m_s, {0.01, 2.0});
+  v.Field("nudges",
+          "where no tube can be grasped, one is pushed away from its wall or neighbour and the bin "
+          "looked into again, so many times before each pick; 0: never",
+          nudges, {0, 10});
+  v.Field("nudge_press_N", "force that ends the way down onto a tube that is to be pushed",
+          nudge_press_N, {1, 20});
+  v.Field("nudge_force_N", "force along the way that ends a push", nudge_force_N, {2, 60});
+  v.Field("nudge_speed_m_s", "speed of the fingers while they push a tube", nudge_speed_m_s,
+          {0.005, 0.1});
 }
 
 Json ToJson(const std::optional<Prediction>& prediction) {

@@ -55,6 +55,12 @@ struct PlannerConfig {
   std::string classes = "crossings";
   bool exclude_free = false;  ///< Free tubes stay but may not be chosen.
   double lift_speed_m_s = 0.25;
+  /// Not in the paper: where no tube can be grasped, one is pushed free and the bin looked into
+  /// again, so many times before each pick. 0: never.
+  int nudges = 2;
+  double nudge_press_N = 3.0;     ///< Force that ends the way down onto a tube.
+  double nudge_force_N = 15.0;    ///< Force along the way that ends a push.
+  double nudge_speed_m_s = 0.03;  ///< Of the fingers while they push.
   void Visit(ConfigVisitor& v);
 };
 

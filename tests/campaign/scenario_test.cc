@@ -20,6 +20,16 @@ TEST_CASE("The paper's profile changes defaults, a layer still wins over it", "[
   CHECK(scenario.cycle.tolerance_share == 0.5);
 }
 
+TEST_CASE("The paper's profile nudges no tube, whatever a layer says", "[unit]") {
+  ConfigSource source;
+  CHECK(ReadScenario(source).planner.nudges == 2);
+  CHECK(ReadScenario(source, "leao2020").planner.nudges == 0);
+  source.AddOverride("planner.nudges=1");
+  CHECK(ReadScenario(source, "best").planner.nudges == 1);
+  CHECK_THROWS_WITH(ReadScenario(source, "leao2020"),
+                    Catch::Matchers::Contains("planner.nudges is 1; only 0 is allowed"));
+}
+
 TEST_CASE("The profile of the command line wins, and the default is best", "[unit]") {
   ConfigSource source;
   CHECK(ReadScenario(source).perception.profile == "best");

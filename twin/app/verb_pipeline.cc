@@ -13,6 +13,7 @@
 #include "planner/choose.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/more_motions.h"
+#include "planner/nudge.h"
 #include "planner/tilt_motions.h"
 #include "twin/app/common.h"
 #include "twin/render/scan_geometry.h"
@@ -117,11 +118,23 @@ int PlanScene(const std::string& file, const std::string& part_name, const Commo
   const Scenario scenario = LoadScenario({}, common);
   const MotionPlanner motion(Hc10(), CellLayout(), bin);
   const FeasibilityFunction feasible = ArmFeasibility(motion, CellLayout(), bin, part.radius_m);
-  const PlanResult result = PlanPicks(scene, {}, part, bin, scenario.planner,
-                                      MakeEvaluator({common.parallelism(), scenario.evaluator}),
-                                      feasible, static_cast<std::uint64_t>(scenario.seed));
-  WriteJsonFile(ToJson(result), common.out);
-  if (result.plans.empty()) {
+  PlanResult result = PlanPicks(scene, {}, part, bin, scenario.planner,
+                                MakeEvaluator({common.parallelism(), scenario.evaluator}), feasible,
+                                static_cast<std::uint64_t>(scenario.seed));
+  NudgeResult nudge;
+  if (result.plans.empty() && scenario.planner.nudges > 0) {
+    nudge = PlanNudge(scene, {}, bin, scenario.planner, feasible,
+                      ArmNudgeFeasibility(motion, CellLayout(), bin));
+    result.rejections.insert(result.rejections.end(), nudge.rejections.begin(),
+                             nudge.rejections.end());
+  }
+  Json out = ToJson(result);
+  out["nudge"] = ToJson(nudge.nudge);
+  WriteJsonFile(out, common.out);
+  if (nudge.nudge) {
+    std::printf("no plan; tube %d would be nudged by %.0f mm; %zu rejections\n", nudge.nudge->tube,
+                1e3 * nudge.nudge->travel_m, result.rejections.size());
+  } else if (result.plans.empty()) {
     std::printf("no plan; %zu rejections\n", result.rejections.size());
   } else {
     const PickPlan& best = result.plans.front();

@@ -178,9 +178,15 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
     planner.weight_clearance = planner.weight_confidence = planner.weight_extra = 0.0;
     planner.weight_release = 0.0;
     planner.min_length_share = planner.min_confidence = 0.0;
+    planner.nudges = 0;
     scenario.resolution.strategy = "plus45";
   }
   source.ReadInto(scenario);
+  if (chosen == "leao2020" && scenario.planner.nudges > 0) {
+    throw Error(ErrorKind::kConfig,
+                "planner.nudges is " + std::to_string(scenario.planner.nudges) +
+                    "; only 0 is allowed in the profile leao2020: the paper pushes no tube");
+  }
   scenario.profile = chosen;
   return scenario;
 }

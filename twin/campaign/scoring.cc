@@ -32,6 +32,12 @@ Json MotionJson(const PickPlan& plan) {
   return json;
 }
 
+Json NudgesJson(const std::vector<NudgeReport>& nudges) {
+  Json out = Json::array();
+  for (const NudgeReport& nudge : nudges) out.push_back(ToJson(nudge));
+  return out;
+}
+
 /// Angle between a tube and the tray's y axis, ends being equal, degrees.
 double YawErrorDeg(const Vector3& direction_T) {
   const double angle = std::atan2(std::abs(direction_T.x()), std::abs(direction_T.y()));
@@ -125,6 +131,7 @@ Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
            {"strategy", report.resolution_used ? Json(ToString(report.strategy)) : Json(nullptr)},
            {"outcome", report.resolution_outcome ? Json(ToString(*report.resolution_outcome))
                                                  : Json(nullptr)}};
+  row["nudges"] = NudgesJson(report.nudges);
   row["outcome"] = ToString(report.outcome);
   row["reason"] = report.reason;
   row["success"] = truth_ ? Json(success) : Json(nullptr);
@@ -203,6 +210,7 @@ Json FaultRow(const std::string& reason) {
   row["prediction"] = nullptr;
   row["detection"] = nullptr;
   row["resolution"] = Json{{"used", false}, {"strategy", nullptr}, {"outcome", nullptr}};
+  row["nudges"] = Json::array();
   row["outcome"] = ToString(AttemptOutcome::kFault);
   row["reason"] = reason;
   row["success"] = false;
