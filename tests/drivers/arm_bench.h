@@ -44,12 +44,17 @@ struct ArmBench {
       const ArmMode mode = driver->State().mode;
       return mode != ArmMode::kMoving && mode != ArmMode::kHolding;
     }));
+    UNSCOPED_INFO(State().fault);
     return driver->State();
   }
   /// A long motion that is well under way.
   void MoveOn(double by_rad = 1.0, double duration_s = 4.0) {
     REQUIRE(driver->Start(Moved(State().q, by_rad, duration_s)).accepted());
-    REQUIRE(Eventually([&] { return driver->State().progress_s > 0.5; }));
+    CHECK(Eventually([&] {
+      const ArmState state = driver->State();
+      return state.progress_s > 0.5 || state.mode != ArmMode::kMoving;
+    }));
+    INFO(State().fault);
     REQUIRE(State().mode == ArmMode::kMoving);
   }
   void Pass(double seconds) { clock.AdvanceTo(clock.Now() + FromSeconds(seconds)); }

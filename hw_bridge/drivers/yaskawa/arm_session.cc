@@ -15,6 +15,7 @@ constexpr double kConnect_s = 8.0;
 constexpr double kAnswer_s = 0.4, kTrajectoryMode_s = 10.0;
 constexpr double kSilence_s = 0.2, kSilenceAtRest_s = 1.0;  ///< Of the state stream.
 constexpr auto kLeave = std::chrono::milliseconds(300), kHeartbeat = std::chrono::milliseconds(500);
+constexpr auto kOverslept = std::chrono::milliseconds(60);  ///< Turns are 20 ms apart at most.
 constexpr double kAtRest_rad_s = 0.02;
 constexpr double kSettle_s = 1.0;
 const double kEndTolerance_rad = Radians(0.2);
@@ -40,6 +41,7 @@ void ArmSession::Connect() {
   const auto deadline = Wall::now() + Limit(kConnect_s);
   state_link_.Connect(deadline);
   AwaitState(deadline);
+  turned_ = Wall::now();
   if (!config_.armed) return;
   motion_link_.Connect(deadline);
   Ask(Question::kWhyNotReady);
@@ -103,6 +105,13 @@ std::chrono::nanoseconds ArmSession::Patience() const {
 }
 
 void ArmSession::Turn() {
+  // A host that was busy elsewhere: what came meanwhile is taken now.
+  const auto slept = Wall::now() - turned_;
+  if (slept > kOverslept) {
+    state_link_.Forgive(slept);
+    motion_link_.Forgive(slept);
+  }
+  turned_ = Wall::now();
   TakeState();
   TakeAnswers();
   if (!lost_.empty()) return;

@@ -91,7 +91,7 @@ class ArmSession {
   std::optional<int> over_at_;  ///< Statuses that had come when the motion was over.
   double over_since_s_ = 0;
   std::optional<JointVector> commanded_;  ///< Where the controller holds the arm, where known.
-  Wall::time_point sent_{};
+  Wall::time_point sent_{}, turned_{};
 };
 
 }  // namespace tubetwin

@@ -26,6 +26,10 @@ class MotionLink {
   void Send(simple_message::Body request, Time due);
   /// Requests without an answer.
   bool waiting() const { return !unanswered_.empty(); }
+  /// Time in which nobody could listen is not waited for.
+  void Forgive(std::chrono::nanoseconds slept) {
+    for (Unanswered& one : unanswered_) one.due += slept;
+  }
 
   struct Answer {
     simple_message::Body request;

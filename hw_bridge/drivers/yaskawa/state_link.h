@@ -28,6 +28,8 @@ class StateLink {
   const std::string& problem() const;
   /// Since the last feedback, or the connection.
   std::chrono::nanoseconds Silence() const { return std::chrono::steady_clock::now() - heard_; }
+  /// Time in which nobody could listen is no silence.
+  void Forgive(std::chrono::nanoseconds slept) { heard_ += slept; }
   const std::string& name() const { return client_.name(); }
 
  private:
