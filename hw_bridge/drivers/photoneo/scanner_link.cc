@@ -5,11 +5,12 @@
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/text.h"
 #include "hw_bridge/drivers/photoneo/folder_scanner.h"
+#include "hw_bridge/drivers/photoneo/gige_scanner.h"
 
 namespace tubetwin {
 
 void ScannerLinkConfig::Visit(ConfigVisitor& v) {
-  v.Choice("driver", "how scans are exchanged", driver, {"folder"});
+  v.Choice("driver", "how scans are exchanged", driver, {"folder", "gige"});
   v.Field("host", "gige: the scanner's IPv4 address", host);
   v.Field("path", "folder: where triggers and scans are exchanged", path);
   v.Field("timeout_s", "from a trigger to its whole scan, cell time", timeout_s, {0.1, 25.0});
@@ -28,6 +29,9 @@ void ScannerLinkConfig::ValidateOrThrow() const {
 std::unique_ptr<Scanner> ConnectScanner(const ScannerLinkConfig& config,
                                         ScannerPose believed_X_NS) {
   config.ValidateOrThrow();
+  if (config.driver == "gige") {
+    return std::make_unique<GigeScanner>(config, std::move(believed_X_NS));
+  }
   return std::make_unique<FolderScanner>(config, std::move(believed_X_NS));
 }
 

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "hw_bridge/base/cloud.h"
+
+namespace tubetwin {
+
+/// What a wait for a frame brought besides a cloud.
+struct NoFrame {
+  enum class Kind {
+    kNotYet,      ///< Nothing came within the wait.
+    kIncomplete,  ///< A frame of which packets are missing.
+    kNoRange,     ///< A whole frame that holds no range image.
+  } kind = Kind::kNotYet;
+  std::string what;
+};
+using ReceivedFrame = std::variant<OrganizedCloud, NoFrame>;
+
+/// A 3D scanner on GigE Vision, set up for range images on software trigger. A thin owner of
+/// aravis's objects; one thread at a time.
+///
+/// On the network: the camera is addressed by its address only, UDP port 3956. Nothing is
+/// broadcast, nobody is discovered, no raw socket is opened. Two UDP ports are open meanwhile, both
+/// on the one local address that leads to the camera: of the control channel, which also sends a
+/// heartbeat each second, and of the frames. What cannot be avoided: aravis does not ask who sent a
+/// datagram that reaches these two ports, so the network of the scanner has to be a private one.
+class GigeCamera {
+ public:
+  /// Takes control of the camera and starts acquisition; nothing is scanned before Trigger(). Gives
+  /// up within 8 s (a camera that vanishes half way: 13 s). Throws Error(kConfig) when `host` is no
+  /// IPv4 address, Error(kDevice) naming device, place and what was awaited.
+  explicit GigeCamera(const std::string& host);
+  /// Releases the camera. At once, but up to 8 s when the link is broken: aravis asks several times
+  /// and cannot be told otherwise.
+  ~GigeCamera();
+
+  /// "scanner HOST:3956 (GigE Vision)".
+  const std::string& name() const;
+  /// Whether control was lost: somebody else took it, or the camera has not answered for several
+  /// seconds. It stays lost.
+  bool lost() const;
+
+  /// A frame is wanted; those that came before are forgotten. Throws Error(kDevice) when the camera
+  /// does not say that it heard.
+  void Trigger();
+  /// Waits up to `wait` for a frame.
+  ReceivedFrame Receive(std::chrono::milliseconds wait);
+  /// Forgets frames that were asked for and have not come: they cannot arrive any more. Throws
+  /// Error(kDevice).
+  void Restart();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tubetwin
