@@ -8,9 +8,7 @@
 
 #include "hw_bridge/base/config.h"
 #include "hw_bridge/cell/devices.h"
-#include "hw_bridge/emulators/emulator.h"
-#include "hw_bridge/emulators/link_faults.h"
-#include "hw_bridge/emulators/scan_faults.h"
+#include "hw_bridge/emulators/scanner_emulator.h"
 
 namespace tubetwin {
 
@@ -25,7 +23,7 @@ struct ScannerFolderConfig {
 /// scan; the cloud is written in S, without pose and labels, as a real scanner would. What is left
 /// to compute and the writing run on a thread of their own, one scan at a time, so the cell goes on
 /// in real time; the destructor waits for them.
-class ScannerFolderEmulator : public Emulator {
+class ScannerFolderEmulator : public ScannerEmulator {
  public:
   /// `scanner` must outlive it. Throws Error(kCannotCreate) when the folder cannot be made or
   /// written to.
@@ -35,14 +33,6 @@ class ScannerFolderEmulator : public Emulator {
   void Tick(TimeNs now) override;
 
   const std::string& path() const { return config_.path; }
-  std::uint64_t triggers() const { return triggers_; }  ///< Taken up so far.
-  std::uint64_t answers() const { return answers_; }    ///< Clouds and refusals written so far.
-  /// The last thing that went wrong on this side (disk full, folder gone); empty: nothing yet.
-  const std::string& last_problem() const { return last_problem_; }
-
-  // What fault scripts do.
-  ScanFaults& faults() { return faults_; }
-  LinkFaults& link() { return link_; }
 
  private:
   struct Written {
@@ -58,8 +48,6 @@ class ScannerFolderEmulator : public Emulator {
 
   Scanner& scanner_;
   ScannerFolderConfig config_;
-  ScanFaults faults_;
-  LinkFaults link_;
 
   TimeNs next_poll_{0};
   std::uint64_t number_ = 0;  ///< Of the trigger that is served.
@@ -70,8 +58,6 @@ class ScannerFolderEmulator : public Emulator {
   TimeNs publish_at_{0};
 
   std::deque<std::string> published_;
-  std::uint64_t triggers_ = 0, answers_ = 0;
-  std::string last_problem_;
 };
 
 }  // namespace tubetwin

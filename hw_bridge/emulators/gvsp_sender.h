@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/codecs/gvsp.h"
+
+namespace tubetwin {
+
+/// Where a client awaits frames: IPv4 address and UDP port, host byte order.
+struct GvspClient {
+  std::uint32_t address = 0, port = 0;
+  bool operator==(const GvspClient&) const = default;
+};
+
+/// Sends image frames by GVSP, at the speed that the client can take: over Ethernet 100 MB/s, which
+/// is what its wire holds; on loopback, where nothing else holds the sender back and lost packets
+/// are not sent again, as fast as the client reads (the kernel tells how much waits at its port).
+class GvspSender {
+ public:
+  /// From a free port of `listen`. Throws Error(kDevice) when there is none.
+  explicit GvspSender(const std::string& listen);
+  ~GvspSender();
+
+  struct Frame {
+    GvspImage image;
+    std::vector<std::byte> bytes;
+    std::uint32_t packet_size = 0;  ///< As agreed on, with all headers.
+    double sent_share = 1.0;        ///< Of the payload packets, from the first one on.
+  };
+  /// Sends all of the frame. Returns early when `stop` is set, or the client has closed its port or
+  /// not read for 2 s. Any thread, one frame at a time.
+  void Send(const Frame& frame, const GvspClient& to, const std::atomic<bool>& stop);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tubetwin
