@@ -142,7 +142,8 @@ TEST_CASE("The twin's scanner behind GigE Vision keeps the contract and its poin
   TwinGigeRig rig;
   CheckScannerContract(rig);
   for (int shot = 0; shot < 2; ++shot) {
-    CheckSamePoints(TakeScan(rig), rig.seen(), kMillimetreRounding);
+    const OrganizedCloud got = TakeScan(rig);
+    CheckSamePoints(got, rig.seen(), kMillimetreRounding);
   }
 }
 

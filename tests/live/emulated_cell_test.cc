@@ -1,7 +1,12 @@
 #include "twin/live/emulated_cell.h"
 
+#include <chrono>
 #include <optional>
+#include <thread>
 
+#include "hw_bridge/base/error.h"
+#include "hw_bridge/drivers/photoneo/scanner_link.h"
+#include "hw_bridge/emulators/scanner_gige_emulator.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/campaign/twin_setup.h"
@@ -12,11 +17,11 @@ namespace {
 
 /// An emulated cell with one tube and no client.
 struct Bench {
-  explicit Bench(const std::string& listen = "127.0.0.1") {
+  explicit Bench(const std::string& listen = "127.0.0.1", bool gige = false) {
     scenario.pile.count = 1;
     const Pile pile = ScenarioPile(scenario, ".");
     twin.emplace(pile, ScenarioTwin(scenario, ScenarioPhysics(scenario, pile.part), {1}));
-    cell.emplace(*twin, scenario, EmulationPlaces{listen, true, folder.path()});
+    cell.emplace(*twin, scenario, EmulationPlaces{listen, true, folder.path(), gige});
   }
   TemporaryFolder folder;
   Scenario scenario;
@@ -88,6 +93,44 @@ TEST_CASE("A cell file arms the arm of a loopback address only, and names every 
   }
   Bench bench("0.0.0.0");
   CHECK_FALSE(bench.cell->Reaching().cell.arm.armed);
+}
+
+TEST_CASE("GigE Vision is served when it is asked for, and not otherwise", "[unit]") {
+  Bench folder;
+  CHECK(folder.cell->Reaching().cell.scanner.driver == "folder");
+  CHECK_FALSE(folder.cell->Reaching().cell.scanner.path.empty());
+  {  // Whoever can have the port sees that nobody else has it.
+    const ScannerGigeEmulator other(folder.twin->cell().scanner, {});
+    try {
+      const Bench taken("127.0.0.1", true);
+      FAIL("no error");
+    } catch (const Error& error) {
+      CHECK(error.kind() == ErrorKind::kDevice);
+      CHECK_THAT(error.what(), Catch::Contains("cannot listen on 127.0.0.1:3956, UDP"));
+    }
+  }
+  Bench bench("127.0.0.1", true);
+  const CellChoice::Scanner chosen = bench.cell->Reaching().cell.scanner;
+  CHECK(chosen.driver == "gige");
+  CHECK(chosen.host == "127.0.0.1");
+  CHECK(chosen.path.empty());
+  CHECK_NOTHROW(bench.cell->Reaching().cell.ValidateOrThrow());
+  ScannerLinkConfig link;
+  link.driver = chosen.driver;
+  link.host = chosen.host;
+  link.timeout_s = 25.0;
+  const auto driver = ConnectScanner(link, [] { return RigidTransform::Identity(); });
+  REQUIRE(driver->Trigger().accepted());
+  for (int i = 0; i < 20000 && driver->Status() == ScanStatus::kBusy; ++i) {
+    bench.cell->Step();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  INFO(driver->FailureReason());
+  REQUIRE(driver->Status() == ScanStatus::kReady);
+  const OrganizedCloud cloud = driver->Take();
+  CHECK(cloud.width == 1032);
+  CHECK(cloud.height == 772);
+  CHECK(bench.cell->scanner().triggers() == 1);
 }
 
 }  // namespace tubetwin

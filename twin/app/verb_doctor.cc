@@ -98,11 +98,14 @@ std::vector<Finding> ExamineCell(const Scenario& scenario, const std::string& fo
   out.push_back(Look("force/torque sensor", cell.wrist.driver,
                      "check power, address and [cell.wrist]; counts must be those of its page",
                      [&] { return Said(ConnectWrist(scenario, clock)->Read()); }));
-  out.push_back(Look("scanner", cell.scanner.driver,
-                     "make the folder, or mount the share, that [cell.scanner] path names", [&] {
-                       ConnectScanner(scenario, folder, [] { return RigidTransform::Identity(); });
-                       return std::string("its folder can be used");
-                     }));
+  const bool gige = cell.scanner.driver == "gige";
+  const char* const scanner_fix =
+      gige ? "check power, address and [cell.scanner], and that no other program has the scanner"
+           : "make the folder, or mount the share, that [cell.scanner] path names";
+  out.push_back(Look("scanner", cell.scanner.driver, scanner_fix, [&] {
+    ConnectScanner(scenario, folder, [] { return RigidTransform::Identity(); });
+    return std::string(gige ? "it takes orders" : "its folder can be used");
+  }));
   return out;
 }
 

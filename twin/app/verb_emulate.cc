@@ -18,7 +18,7 @@ volatile std::sig_atomic_t g_stop = 0;  // Signal handlers may touch nothing els
 struct EmulateChoice {
   std::string scenario, listen = "127.0.0.1", faults;
   double rate = 0.0, for_s = 0.0;
-  bool any_ports = false;
+  bool any_ports = false, gige = false;
 };
 
 int RunEmulate(const EmulateChoice& choice, const Common& common) {
@@ -32,6 +32,7 @@ int RunEmulate(const EmulateChoice& choice, const Common& common) {
   options.out_folder = common.out;
   options.listen = choice.listen;
   options.any_ports = choice.any_ports;
+  options.gige = choice.gige;
   options.faults_file = choice.faults;
   options.for_s = choice.for_s;
   options.parallelism = common.parallelism();
@@ -83,6 +84,8 @@ void AddEmulateVerb(CLI::App& app, Common& common) {
       ->check(CLI::Range(0.01, 100.0));
   verb->add_flag("--any-ports", choice->any_ports,
                  "Free ports instead of the devices' own; cell.toml says which");
+  verb->add_flag("--gige", choice->gige,
+                 "The scanner on GigE Vision (UDP 3956, which is fixed) instead of a folder");
   verb->add_option("--faults", choice->faults, "Fault script (TOML)")->type_name("F.toml");
   verb->add_option("--for", choice->for_s, "Ends after so many seconds of the cell's time")
       ->check(CLI::Range(0.0, 1e7));

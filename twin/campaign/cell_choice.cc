@@ -77,9 +77,10 @@ void CellChoice::Wrist::Visit(ConfigVisitor& v) {
 }
 
 void CellChoice::Scanner::Visit(ConfigVisitor& v) {
-  v.Choice("driver", "twin, a Photoneo PhoXi by a folder of saved scans, or a recording", driver,
-           {"twin", "folder", "replay"});
-  v.Field("host", "gige: address", host);
+  v.Choice("driver",
+           "twin, a Photoneo PhoXi by a folder of saved scans or by GigE Vision, or a recording",
+           driver, {"twin", "folder", "gige", "replay"});
+  v.Field("host", "gige: IPv4 address", host);
   v.Field("path", "folder: where scans are asked for and saved", path);
   v.Field("timeout_s", "from a trigger to its whole scan", timeout_s, {0.1, 600});
   v.Field("hand_eye_error", "error of the scanner's pose against what [physics] draws; 0: none",

@@ -81,7 +81,8 @@ EmulateResult Emulate(const Scenario& scenario, const EmulateOptions& options) {
   const Pile pile = StartPile(scenario, asked, physics);
   SavePile(pile, (out / "start.pile.json").string());
   TwinCell twin(pile, ScenarioTwin(scenario, physics, options.parallelism));
-  EmulatedCell cell(twin, scenario, {options.listen, options.any_ports, out.string()});
+  EmulatedCell cell(twin, scenario,
+                    {options.listen, options.any_ports, out.string(), options.gige});
   EventLog log((out / "events.jsonl").string(), cell);
   cell.OnMoment([&](const std::string& moment) {
     log.Write("event", moment);

@@ -13,6 +13,7 @@ struct EmulateOptions {
   std::string scenario_folder = ".";  ///< What relative file names in the scenario refer to.
   std::string listen = "127.0.0.1";
   bool any_ports = false;   ///< Free ports instead of those of [cell.*].
+  bool gige = false;        ///< The scanner on GigE Vision instead of a folder of scans.
   std::string faults_file;  ///< Fault script; empty: nothing happens.
   double for_s = 0.0;       ///< Ends after so much cell time; 0: when asked to.
   Parallelism parallelism = Parallelism::All();

@@ -5,6 +5,9 @@
 
 #include <asio.hpp>
 
+#include "hw_bridge/emulators/scanner_folder_emulator.h"
+#include "hw_bridge/emulators/scanner_gige_emulator.h"
+
 namespace tubetwin {
 namespace {
 
@@ -43,10 +46,20 @@ WristEmulatorConfig WristAt(const CellChoice::Wrist& wrist, const EmulationPlace
   return config;
 }
 
-ScannerFolderConfig ScannerAt(const EmulationPlaces& places) {
-  ScannerFolderConfig config;
-  config.path = (fs::path(places.folder) / "scans").string();
-  return config;
+std::string ScanFolder(const EmulationPlaces& places) {
+  return (fs::path(places.folder) / "scans").string();
+}
+
+std::unique_ptr<ScannerEmulator> ScannerAt(Scanner& scanner, const Scenario& scenario,
+                                           const EmulationPlaces& places) {
+  if (!places.gige) {
+    ScannerFolderConfig config;
+    config.path = ScanFolder(places);
+    return std::make_unique<ScannerFolderEmulator>(scanner, config);
+  }
+  const ScanSettings scan = ScenarioScan(scenario, RoundPhysics());
+  return std::make_unique<ScannerGigeEmulator>(
+      scanner, ScannerGigeConfig{places.listen, scan.width, scan.height});
 }
 
 }  // namespace
@@ -59,7 +72,7 @@ struct EmulatedCell::Impl {
         arm(io, twin.servo_arm(), twin.cell().arm_model, ArmAt(given.cell.arm, at)),
         gripper(io, twin.cell().gripper, GripperAt(given.cell.gripper, at)),
         wrist(io, twin.cell().wrist, WristAt(given.cell.wrist, at)),
-        scanner(twin.cell().scanner, ScannerAt(at)),
+        scanner(ScannerAt(twin.cell().scanner, given, at)),
         moments(twin.cell().arm_model, twin.cell().layout, twin.cell().bin) {}
 
   void Look() {
@@ -70,7 +83,7 @@ struct EmulatedCell::Impl {
     look.q = twin.servo_arm().Servo().q;
     look.fingers = twin.cell().gripper.State();
     look.fingers_in_use = gripper.controller().Status().activation == GripperActivation::kDone;
-    look.scans = scanner.triggers();
+    look.scans = scanner->triggers();
     for (const std::string& moment : moments.After(look)) {
       if (hear) hear(moment);
     }
@@ -83,7 +96,7 @@ struct EmulatedCell::Impl {
   ArmEmulator arm;
   GripperEmulator gripper;
   WristEmulator wrist;
-  ScannerFolderEmulator scanner;
+  std::unique_ptr<ScannerEmulator> scanner;
   CycleMoments moments;
   std::function<void(const std::string&)> hear;
   bool moved = false;
@@ -105,7 +118,7 @@ void EmulatedCell::Step() {
   const TimeNs now = clock.Now();
   for (Emulator* emulator :
        {static_cast<Emulator*>(&impl_->arm), static_cast<Emulator*>(&impl_->gripper),
-        static_cast<Emulator*>(&impl_->wrist), static_cast<Emulator*>(&impl_->scanner)}) {
+        static_cast<Emulator*>(&impl_->wrist), static_cast<Emulator*>(impl_->scanner.get())}) {
     emulator->Tick(now);
   }
   impl_->Look();
@@ -120,7 +133,7 @@ void EmulatedCell::OnMoment(std::function<void(const std::string&)> hear) {
 ArmEmulator& EmulatedCell::arm() { return impl_->arm; }
 GripperEmulator& EmulatedCell::gripper() { return impl_->gripper; }
 WristEmulator& EmulatedCell::wrist() { return impl_->wrist; }
-ScannerFolderEmulator& EmulatedCell::scanner() { return impl_->scanner; }
+ScannerEmulator& EmulatedCell::scanner() { return *impl_->scanner; }
 const CycleMoments& EmulatedCell::moments() const { return impl_->moments; }
 
 Scenario EmulatedCell::Reaching() const {
@@ -143,8 +156,8 @@ Scenario EmulatedCell::Reaching() const {
   cell.wrist.driver = "rdt";
   cell.wrist.port = impl_->wrist.port();
   cell.wrist.http_port = impl_->wrist.http_port();
-  cell.scanner.driver = "folder";
-  cell.scanner.path = impl_->scanner.path();
+  cell.scanner.driver = impl_->places.gige ? "gige" : "folder";
+  cell.scanner.path = impl_->places.gige ? "" : ScanFolder(impl_->places);
   cell.arm.host = cell.gripper.host = cell.wrist.host = cell.scanner.host = impl_->places.listen;
   return out;
 }

@@ -8,7 +8,7 @@
 #include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/emulators/arm_emulator.h"
 #include "hw_bridge/emulators/gripper_emulator.h"
-#include "hw_bridge/emulators/scanner_folder_emulator.h"
+#include "hw_bridge/emulators/scanner_emulator.h"
 #include "hw_bridge/emulators/wrist_emulator.h"
 #include "twin/campaign/scenario.h"
 #include "twin/cell/twin_cell.h"
@@ -21,6 +21,7 @@ struct EmulationPlaces {
   std::string listen = "127.0.0.1";  ///< Address of every port.
   bool any_ports = false;            ///< Free ports instead of those of [cell.*].
   std::string folder;                ///< Absolute: scans/ and, by serial line, gripper.tty.
+  bool gige = false;  ///< The scanner on GigE Vision, UDP 3956 always, instead of scans/.
 };
 
 /// A twin whose four devices are served on their wire protocols, by the ports of the scenario's
@@ -43,7 +44,7 @@ class EmulatedCell {
   ArmEmulator& arm();
   GripperEmulator& gripper();
   WristEmulator& wrist();
-  ScannerFolderEmulator& scanner();
+  ScannerEmulator& scanner();
   const CycleMoments& moments() const;
 
   /// The scenario with devices that reach this cell, for a cell file.

@@ -102,7 +102,7 @@ std::unique_ptr<ForceTorqueSensor> ConnectWrist(const Scenario& scenario, const 
 std::unique_ptr<Scanner> ConnectScanner(const Scenario& scenario, const std::string& folder,
                                         std::function<RigidTransform()> believed_X_NS) {
   const CellChoice::Scanner& chosen = scenario.cell.scanner;
-  TT_CHECK(chosen.driver == "folder");
+  TT_CHECK(chosen.driver == "folder" || chosen.driver == "gige");
   ScannerLinkConfig config;
   config.driver = chosen.driver;
   config.host = chosen.host;
