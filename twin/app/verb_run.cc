@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/base/text.h"
 #include "hw_bridge/cell/replay_cell.h"
 #include "twin/app/common.h"
@@ -114,7 +115,11 @@ RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOp
   }
   LiveCell live(scenario, options.scenario_folder, cell_folder,
                 run.dry ? CellPurpose::kLook : CellPurpose::kRun, options.parallelism);
-  if (!run.dry) return RunCellRound(live.cell(), scenario, options);
+  if (!run.dry) {
+    RoundResult result = RunCellRound(live.cell(), scenario, options);
+    WriteJsonFile(live.Links(), (fs::path(options.out_folder) / "links.json").string());
+    return result;
+  }
   DryRunCell dry(live.cell());
   int attempts = 0;  // The stop is asked for before each: one is enough to see what would be done.
   const auto stop_requested = options.stop_requested;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/json.h"
 #include "hw_bridge/cell/wall_clock.h"
 #include "hw_bridge/drivers/ati/netft_sensor.h"
 #include "hw_bridge/drivers/photoneo/scanner_link.h"
@@ -164,5 +165,22 @@ LiveCell::LiveCell(const Scenario& scenario, const std::string& scenario_folder,
 }
 LiveCell::~LiveCell() = default;
 Cell& LiveCell::cell() { return *impl_->cell; }
+
+Json LiveCell::Links() const {
+  Json out = Json::object();
+  if (const auto* gripper = dynamic_cast<const RobotiqGripper*>(impl_->gripper.get())) {
+    out["gripper"] =
+        Json{{"unanswered", gripper->unanswered()}, {"problem", gripper->LinkProblem()}};
+  }
+  if (const auto* wrist = dynamic_cast<const NetftSensor*>(impl_->wrist.get())) {
+    const NetftSensor::Statistics s = wrist->statistics();
+    out["wrist"] = Json{{"samples", s.samples},
+                        {"lost", s.lost},
+                        {"late", s.late},
+                        {"malformed", s.malformed},
+                        {"faulty", s.faulty}};
+  }
+  return out;
+}
 
 }  // namespace tubetwin

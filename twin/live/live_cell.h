@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/base/parallel.h"
 #include "hw_bridge/cell/cell.h"
 #include "twin/campaign/scenario.h"
@@ -42,6 +43,9 @@ class LiveCell {
            const std::string& cell_folder, CellPurpose purpose, Parallelism parallelism);
   ~LiveCell();
   Cell& cell();
+  /// What came over the links so far and what was lost: {gripper: {unanswered, problem}, wrist:
+  /// {samples, lost, late, malformed, faulty}}; devices that are the twin's are missing.
+  Json Links() const;
 
  private:
   struct Impl;
