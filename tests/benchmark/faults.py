@@ -86,18 +86,22 @@ FAULTS = {
     "wrist_fault_status": fault("wrist", "status", ENDS, 40, "value = 2147614720"),
     "wrist_threshold": fault("wrist", "threshold", GOES_ON, 0),
     "wrist_sequence_gap": fault("wrist", "skip", GOES_ON, 0, "count = 100"),
-    "scanner_no_answer": fault("scanner", "no_answer", ENDS, 60),
+    # One bad scan is asked for again; two in a row end the round.
+    "scanner_no_answer": fault("scanner", "no_answer", GOES_ON, 0),
+    "scanner_no_answer_twice": fault("scanner", "no_answer", ENDS, 80, "count = 2"),
     "scanner_late_2s": fault("scanner", "late", GOES_ON, 0, "value = 2"),
-    "scanner_truncated": fault("scanner", "truncate", ENDS, 60),
-    "scanner_garbage": fault("scanner", "garbage", ENDS, 60),
-    "scanner_refused": fault("scanner", "refuse", ENDS, 60),
-    "scanner_covered": fault("scanner", "cover", EITHER, 60, "count = 100"),
-    "scanner_link_freeze": fault("scanner.link", "freeze", ENDS, 60),
-    "scanner_link_corrupt": fault("scanner.link", "corrupt", ENDS, 60),
+    "scanner_truncated": fault("scanner", "truncate", GOES_ON, 0),
+    "scanner_truncated_twice": fault("scanner", "truncate", ENDS, 80, "count = 2"),
+    "scanner_garbage": fault("scanner", "garbage", GOES_ON, 0),
+    "scanner_refused": fault("scanner", "refuse", GOES_ON, 0),
+    "scanner_refused_twice": fault("scanner", "refuse", ENDS, 80, "count = 2"),
+    "scanner_covered": fault("scanner", "cover", EITHER, 80, "count = 100"),
+    "scanner_link_freeze": fault("scanner.link", "freeze", ENDS, 80),
+    "scanner_link_corrupt": fault("scanner.link", "corrupt", ENDS, 80),
 }
 HELD_AT = ("held", "lift", "carry")
 TENS = ["motion_freeze", "state_freeze", "emergency_stop", "protective_stop", "alarm", "gripper_link_freeze",
-        "gripper_object_lost", "wrist_link_freeze", "scanner_no_answer", "motion_close"]
+        "gripper_object_lost", "wrist_link_freeze", "scanner_no_answer_twice", "motion_close"]
 
 
 def judge(name, moment, code, err, events, world, cell_s, rows):

@@ -104,13 +104,18 @@ RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOp
         (fs::path(cell_folder) / scenario.cell.recording).lexically_normal().string();
     ReplayCell replay{CellRecording(path)};
     replay.cell().safety = ScenarioSafety(scenario);
+    options.replay = &replay;
+    const auto fail = [&](const std::string& why) {
+      throw Error(ErrorKind::kBadData, path + ": " + why +
+                                           "\nthis configuration or program does something else "
+                                           "than the recorded one; see `tubetwin replay --verify`");
+    };
     try {
-      return RunCellRound(replay.cell(), scenario, options);
+      RoundResult result = RunCellRound(replay.cell(), scenario, options);
+      if (replay.tally().difference) fail(ToString(*replay.tally().difference));
+      return result;
     } catch (const ReplayOver& over) {
-      throw Error(ErrorKind::kBadData, path + ": " + over.what() +
-                                           "; this pipeline does something else than the recorded "
-                                           "one (`tubetwin replay --verify` shows what), or the "
-                                           "recording was cut short");
+      fail(over.what());
     }
   }
   LiveCell live(scenario, options.scenario_folder, cell_folder,

@@ -106,6 +106,11 @@ void EndRecording(CellRecorder& recorder, const RoundReport& report) {
   recorder.Finish(report.reason);
 }
 
+void EndReplay(ReplayCell& replay, const RoundReport& report) {
+  replay.Result(BelievedRound(report));
+  replay.Finish();
+}
+
 ReplayResult ReplayRound(const std::string& recording_path, const ReplayOptions& options) {
   ReplayResult result;
   CellRecording recording(recording_path);
@@ -126,8 +131,7 @@ ReplayResult ReplayRound(const std::string& recording_path, const ReplayOptions&
       report = FinishHeldAttempt(replay.cell(), setup,
                                  HeldStateFromJson(JsonView(held, recording_path)), observer);
     }
-    replay.Result(BelievedRound(report));
-    replay.Finish();
+    EndReplay(replay, report);
   } catch (const ReplayOver&) {
     // The tally says why.
   }

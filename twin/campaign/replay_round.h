@@ -29,6 +29,8 @@ std::string BelievedAttempt(const AttemptReport& report);
 
 /// Writes the end of the round into its recording.
 void EndRecording(CellRecorder& recorder, const RoundReport& report);
+/// Compares the end of the round with the recorded one. Throws ReplayOver.
+void EndReplay(ReplayCell& replay, const RoundReport& report);
 
 struct ReplayOptions {
   Parallelism parallelism = Parallelism::All();

@@ -80,6 +80,7 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
       pipeline.held ? FinishHeldAttempt(cell, setup, HeldCycle(*pipeline.held), recorder)
                     : RunPickCycle(cell, setup, recorder);
   if (cell_recorder) EndRecording(*cell_recorder, report);
+  if (options.replay != nullptr) EndReplay(*options.replay, report);
 
   RoundResult result;
   result.interrupted = report.end == RoundEnd::kInterrupted;

@@ -7,6 +7,7 @@
 #include "hw_bridge/base/json.h"
 #include "hw_bridge/base/parallel.h"
 #include "hw_bridge/cell/cell.h"
+#include "hw_bridge/cell/replay_cell.h"
 #include "planner/pick_cycle.h"
 #include "twin/campaign/scenario.h"
 
@@ -27,6 +28,8 @@ struct RoundOptions {
   bool video = false;  ///< With kAll only.
   /// Also record what crosses the cell's border (kCellRecordingFile), for ReplayRound().
   bool record_cell = false;
+  /// The cell of RunCellRound when it is a recorded one: it compares what the pipeline says, too.
+  ReplayCell* replay = nullptr;
   bool force = false;  ///< Replace rows of another configuration.
   std::string program_version;
   std::function<void(const std::string&)>

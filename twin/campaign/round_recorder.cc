@@ -26,6 +26,7 @@ RoundRecorder::RoundRecorder(RoundScorer scorer, const RoundOptions& options)
 
 void RoundRecorder::OnStep(const std::string& caption) {
   if (tape != nullptr) tape->Caption(caption);
+  if (options_.replay != nullptr) options_.replay->Caption(caption);
   if (options_.progress) {
     options_.progress("attempt " + std::to_string(rows.size() + 1) + ": " + caption);
   }
@@ -34,6 +35,7 @@ void RoundRecorder::OnStep(const std::string& caption) {
 void RoundRecorder::OnAttemptEnd(const AttemptReport& report) {
   rows.push_back(scorer_.AttemptRow(report, 0));
   if (tape != nullptr) tape->Result(BelievedAttempt(report));
+  if (options_.replay != nullptr) options_.replay->Result(BelievedAttempt(report));
   const double now = WallNow();
   timings.push_back(RoundScorer::TimingRow(report, 0, now - attempt_began_));
   attempt_began_ = now;
