@@ -66,8 +66,10 @@ FAULTS = {
     "refuse_start": fault("arm", "refuse", ENDS, 15, "value = 3011\ncount = 1"),
     "refuse_speed": fault("arm", "refuse", ENDS, 15, "value = 3013\ncount = 1"),
     "gripper_link_drop": fault("gripper.link", "drop", ENDS, 40),
-    "gripper_link_drop_0.3s": fault("gripper.link", "drop", GOES_ON, 0, "for_s = 0.3"),
-    "gripper_link_delay_0.1s": fault("gripper.link", "delay", GOES_ON, 0, "value = 0.1"),
+    "gripper_link_drop_0.05s": fault("gripper.link", "drop", GOES_ON, 0, "for_s = 0.05"),
+    # The gripper itself calls silence of 1 s a fault, and a lost request is waited for.
+    "gripper_link_drop_0.3s": fault("gripper.link", "drop", EITHER, 40, "for_s = 0.3"),
+    "gripper_link_delay_0.1s": fault("gripper.link", "delay", EITHER, 80, "value = 0.1"),
     "gripper_link_duplicate": fault("gripper.link", "duplicate", EITHER, 40),
     "gripper_link_corrupt": fault("gripper.link", "corrupt", ENDS, 40),
     "gripper_link_freeze": fault("gripper.link", "freeze", ENDS, 40),
