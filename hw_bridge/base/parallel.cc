@@ -1,5 +1,7 @@
 #include "hw_bridge/base/parallel.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -8,6 +10,12 @@
 #include <vector>
 
 namespace tubetwin {
+
+void GiveWay() {
+  // Linux keeps the value per thread; where that fails nothing is lost but a little time.
+  const int now = ::getpriority(PRIO_PROCESS, 0);
+  ::setpriority(PRIO_PROCESS, 0, std::min(now + 5, 19));
+}
 
 Parallelism Parallelism::All() {
   return {std::max(1, static_cast<int>(std::thread::hardware_concurrency()))};

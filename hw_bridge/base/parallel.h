@@ -18,4 +18,8 @@ struct Parallelism {
 void ParallelFor(int count, Parallelism parallelism,
                  const std::function<void(int index, int worker)>& body);
 
+/// From here on the calling thread, and threads that it starts, give way to the other threads of
+/// this program (POSIX nice value + 5): for computing beside what must keep time.
+void GiveWay();
+
 }  // namespace tubetwin

@@ -9,6 +9,7 @@
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
+#include "hw_bridge/base/parallel.h"
 #include "hw_bridge/base/random.h"
 #include "hw_bridge/codecs/scan_folder.h"
 
@@ -119,6 +120,7 @@ void ScannerFolderEmulator::Write() {
       config_.path + "/." + ScanFileNameOf(number_, ".part." + config_.format);
   const auto write = [hidden, take = scanner_.TakeLater(), fault = fault_.fault, number = number_,
                       corrupt = link_.corrupt, ply = config_.format == "ply"]() -> Written {
+    GiveWay();  // To the thread of the emulators, which keeps time.
     try {
       OrganizedCloud cloud = take();
       cloud.label.clear();

@@ -120,6 +120,7 @@ RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOp
   }
   LiveCell live(scenario, options.scenario_folder, cell_folder,
                 run.dry ? CellPurpose::kLook : CellPurpose::kRun, options.parallelism);
+  GiveWay();  // Perception and planning, to the threads that listen to the devices.
   if (!run.dry) {
     RoundResult result = RunCellRound(live.cell(), scenario, options);
     WriteJsonFile(live.Links(), (fs::path(options.out_folder) / "links.json").string());
