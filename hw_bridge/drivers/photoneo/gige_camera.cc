@@ -117,10 +117,8 @@ struct GigeCamera::Impl {
   ~Impl() {
     if (!device) return;
     g_signal_handlers_disconnect_by_data(device.get(), &lost);
-    Problem ignored;  // Nothing to be done about it; control is released in any case.
-    if (!lost && stream) {
-      arv_device_execute_command(ARV_DEVICE(device.get()), "AcquisitionStop", ignored.out());
-    }
+    // Giving up control, which comes last, ends the frames too. Asking for that by itself would be
+    // one more question that a dead link leaves unanswered.
     stream.reset();
   }
 

@@ -34,7 +34,7 @@ class GigeCamera {
   /// up within 8 s (a camera that vanishes half way: 13 s). Throws Error(kConfig) when `host` is no
   /// IPv4 address, Error(kDevice) naming device, place and what was awaited.
   explicit GigeCamera(const std::string& host);
-  /// Releases the camera. At once, but up to 8 s when the link is broken: aravis asks several times
+  /// Releases the camera. At once, but up to 5 s when the link is broken: aravis asks several times
   /// and cannot be told otherwise.
   ~GigeCamera();
 
