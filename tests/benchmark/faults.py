@@ -66,8 +66,9 @@ FAULTS = {
     "refuse_start": fault("arm", "refuse", ENDS, 15, "value = 3011\ncount = 1"),
     "refuse_speed": fault("arm", "refuse", ENDS, 15, "value = 3013\ncount = 1"),
     "gripper_link_drop": fault("gripper.link", "drop", ENDS, 40),
-    "gripper_link_drop_0.05s": fault("gripper.link", "drop", GOES_ON, 0, "for_s = 0.05"),
-    # The gripper itself calls silence of 1 s a fault, and a lost request is waited for.
+    # The gripper itself calls silence of 1 s a fault; a lost answer is waited for 0.2 s on the wall, 1 s of a cell at
+    # rate 5.
+    "gripper_link_drop_0.05s": fault("gripper.link", "drop", EITHER, 40, "for_s = 0.05"),
     "gripper_link_drop_0.3s": fault("gripper.link", "drop", EITHER, 40, "for_s = 0.3"),
     "gripper_link_delay_0.1s": fault("gripper.link", "delay", EITHER, 80, "value = 0.1"),
     "gripper_link_duplicate": fault("gripper.link", "duplicate", EITHER, 40),
@@ -103,7 +104,7 @@ FAULTS = {
 }
 HELD_AT = ("held", "lift", "carry")
 TENS = ["motion_freeze", "state_freeze", "emergency_stop", "protective_stop", "alarm", "gripper_link_freeze",
-        "gripper_object_lost", "wrist_link_freeze", "scanner_no_answer_twice", "motion_close"]
+        "gripper_link_drop_0.05s", "wrist_link_freeze", "scanner_no_answer_twice", "motion_close"]
 
 
 def judge(name, moment, code, err, events, world, cell_s, rows):
