@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What scripted faults at five moments of a pick come to: FAULTS x MOMENTS rounds of one tube over the wire.
 
-  tests/benchmark/faults.py [--out DIR] [--rate 5] [--only NAME[,NAME]] [--table]     (from the repository; resumes)
+  tests/benchmark/faults.py [--out DIR] [--rate 5] [--only NAME[,NAME]] [--moments ...] [--table]     (from the repository; resumes)
 
 One line of DIR/rows.jsonl per round; rounds that it holds are skipped. --table prints the table of the docs from it.
 Every round is judged by truth, by the log of the emulated cell and by the program's exit code:
@@ -186,6 +186,7 @@ def main():
     parser.add_argument("--out", default="out/faults")
     parser.add_argument("--rate", type=float, default=5.0)
     parser.add_argument("--only", help="names of faults, with commas; 'ten': ten of them")
+    parser.add_argument("--moments", help="names of moments, with commas; all otherwise")
     parser.add_argument("--program", default=os.path.join(HERE, "..", "..", "build", "bin", "tubetwin"))
     parser.add_argument("--table", action="store_true")
     choice = parser.parse_args()
@@ -199,7 +200,7 @@ def main():
         return table(rows)
     names = TENS if choice.only == "ten" else choice.only.split(",") if choice.only else list(FAULTS)
     done = {(r["fault"], r["moment"]) for r in rows}
-    for moment in MOMENTS:
+    for moment in choice.moments.split(",") if choice.moments else MOMENTS:
         for name in names:
             if (name, moment) in done:
                 continue
