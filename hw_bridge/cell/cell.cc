@@ -259,19 +259,21 @@ GripperOutcome MoveGripper(Cell& cell, const GripperCommand& command) {
 
 WrenchOutcome AverageWrench(Cell& cell, double duration_s) {
   TT_CHECK(duration_s >= Seconds(kControlPeriod));
-  const TimeNs end = cell.clock.Now() + FromSeconds(duration_s);
+  const TimeNs begin = cell.clock.Now(), end = begin + FromSeconds(duration_s);
   WrenchOutcome result;
   Wrench sum;
   TimeNs newest{-1};
   int count = 0, saturated = 0;
-  while (cell.clock.Now() < end) {
+  // At rest late wrenches cost time and nothing else; a mean of the window's begin is none of it.
+  constexpr double kPatience = 10.0;
+  while (cell.clock.Now() < end || newest < begin + (end - begin) / 2) {
     PassPeriod(cell);
     const WrenchSample sample = cell.wrist.Read();
-    if (auto trouble = WristTrouble(cell, sample)) {
+    if (auto trouble = WristTrouble(cell, sample, kPatience)) {
       result.outcome = *trouble;
       return result;
     }
-    if (sample.time == newest) continue;
+    if (sample.time == newest || sample.time < begin) continue;
     newest = sample.time;
     sum = sum + sample.wrench_K;
     saturated += sample.saturated ? 1 : 0;

@@ -93,9 +93,10 @@ std::optional<WaitOutcome> GripperTrouble(const Cell& cell, const GripperState& 
   return std::nullopt;
 }
 
-std::optional<WaitOutcome> WristTrouble(const Cell& cell, const WrenchSample& sample) {
+std::optional<WaitOutcome> WristTrouble(const Cell& cell, const WrenchSample& sample,
+                                        double patience) {
   const double age_s = Age_s(cell, sample.time);
-  if (age_s <= cell.safety.wrist_silence_s) return std::nullopt;
+  if (age_s <= patience * cell.safety.wrist_silence_s) return std::nullopt;
   return Trouble(WaitOutcome::Status::kSensorFault,
                  "wrist: newest wrench is " + Number("%.3f", age_s) + " s old");
 }

@@ -17,8 +17,10 @@ CheckedTrajectory WithinSpeed(const Cell& cell, const CheckedTrajectory& traject
 /// What a gripper's state says against going on, or nothing.
 std::optional<WaitOutcome> GripperTrouble(const Cell& cell, const GripperState& state);
 
-/// What the newest wrench says against trusting it, or nothing.
-std::optional<WaitOutcome> WristTrouble(const Cell& cell, const WrenchSample& sample);
+/// What the newest wrench says against trusting it, or nothing. `patience`: times the silence that
+/// is allowed where the wrench guards a motion.
+std::optional<WaitOutcome> WristTrouble(const Cell& cell, const WrenchSample& sample,
+                                        double patience = 1.0);
 
 /// What ends a motion of the arm that is in `state`: silence, deviation from `path` (may be null),
 /// the gripper, a lost tube. Nothing: go on.
