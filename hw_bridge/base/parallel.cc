@@ -1,5 +1,6 @@
 #include "hw_bridge/base/parallel.h"
 
+#include <sched.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -15,6 +16,12 @@ void GiveWay() {
   // Linux keeps the value per thread; where that fails nothing is lost but a little time.
   const int now = ::getpriority(PRIO_PROCESS, 0);
   ::setpriority(PRIO_PROCESS, 0, std::min(now + 5, 19));
+}
+
+void KeepTime() {
+  sched_param least{};
+  least.sched_priority = ::sched_get_priority_min(SCHED_RR);
+  ::sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &least);
 }
 
 Parallelism Parallelism::All() {

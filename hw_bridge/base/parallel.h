@@ -22,4 +22,9 @@ void ParallelFor(int count, Parallelism parallelism,
 /// this program (POSIX nice value + 5): for computing beside what must keep time.
 void GiveWay();
 
+/// Asks the system to run the calling thread, but not threads that it starts, before all that
+/// compute: for threads that keep time and mostly sleep. Where the user may not ask for that (no
+/// CAP_SYS_NICE) all stays as it is.
+void KeepTime();
+
 }  // namespace tubetwin

@@ -48,44 +48,68 @@ ScannerFolderEmulator::ScannerFolderEmulator(Scanner& scanner, const ScannerFold
   MakeFolder(config_.path);
 }
 
-ScannerFolderEmulator::~ScannerFolderEmulator() = default;  // A future of std::async waits.
+ScannerFolderEmulator::~ScannerFolderEmulator() = default;  // The thread of files is waited for.
 
 void ScannerFolderEmulator::Tick(TimeNs now) {
-  if (link_.freeze) return;
-  try {
-    if (scanning_) {
-      FollowScan();
-    } else if (writing_.valid()) {
-      if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-      Written written = writing_.get();
-      if (written.hidden.empty()) throw Error(ErrorKind::kIo, written.problem);
-      hidden_ = written.hidden;
-      publish_at_ = now + link_.delay + FromSeconds(fault_.delay_s);
-    } else if (hidden_) {
-      if (now >= publish_at_) Publish();
-    } else if (now >= next_poll_) {
-      next_poll_ = now + kPoll;
-      TakeTrigger();
-    }
-  } catch (const std::exception& error) {  // The folder is gone, the disk is full: go on.
-    last_problem_ = error.what();
-    hidden_.reset();
-    scanning_ = false;
+  // Disks may block for longer than a control period: files are the other thread's.
+  if (link_.freeze || !files_.idle()) return;
+  Settle(now);
+  if (!files_.idle()) return;
+  if (scanning_) {
+    FollowScan();
+  } else if (!hidden_.empty()) {
+    if (now >= publish_at_) Publish();
+  } else if (now >= next_poll_) {
+    next_poll_ = now + kPoll;
+    LookForTrigger();
   }
 }
 
-void ScannerFolderEmulator::TakeTrigger() {
-  std::uint64_t newest = 0;
-  std::vector<fs::path> triggers;
-  for (const fs::directory_entry& file : fs::directory_iterator(config_.path)) {
-    const ScanFileName name = ParseScanFileName(file.path().filename().string());
-    if (name.kind != ScanFileName::Kind::kTrigger || !file.is_regular_file()) continue;
-    newest = std::max(newest, name.number);
-    triggers.push_back(file.path());
+void ScannerFolderEmulator::Do(Doing what, std::function<void()> work) {
+  doing_ = what;
+  files_.Start([this, work = std::move(work)] {
+    try {
+      work();
+    } catch (const std::exception& error) {  // The folder is gone, the disk is full: go on.
+      problem_ = error.what();
+    }
+  });
+}
+
+void ScannerFolderEmulator::Settle(TimeNs now) {
+  const Doing done = std::exchange(doing_, Doing::kNothing);
+  if (!problem_.empty()) {
+    last_problem_ = std::exchange(problem_, {});
+    hidden_.clear();
+    return;
   }
-  if (triggers.empty()) return;
-  for (const fs::path& trigger : triggers) fs::remove(trigger);
-  if (!link_.drop) Start(newest);
+  switch (done) {
+    case Doing::kNothing:
+      return;
+    case Doing::kLooking:
+      if (found_ > 0 && !link_.drop) Start(found_);
+      return;
+    case Doing::kWriting:
+      publish_at_ = now + link_.delay + FromSeconds(fault_.delay_s);
+      return;
+    case Doing::kPublishing:
+      if (!link_.drop) ++answers_;
+      return;
+  }
+}
+
+void ScannerFolderEmulator::LookForTrigger() {
+  Do(Doing::kLooking, [this] {
+    found_ = 0;
+    std::vector<fs::path> triggers;
+    for (const fs::directory_entry& file : fs::directory_iterator(config_.path)) {
+      const ScanFileName name = ParseScanFileName(file.path().filename().string());
+      if (name.kind != ScanFileName::Kind::kTrigger || !file.is_regular_file()) continue;
+      found_ = std::max(found_, name.number);
+      triggers.push_back(file.path());
+    }
+    for (const fs::path& trigger : triggers) fs::remove(trigger);
+  });
 }
 
 void ScannerFolderEmulator::Start(std::uint64_t number) {
@@ -116,60 +140,54 @@ void ScannerFolderEmulator::FollowScan() {
 }
 
 void ScannerFolderEmulator::Write() {
-  const std::string hidden =
-      config_.path + "/." + ScanFileNameOf(number_, ".part." + config_.format);
-  const auto write = [hidden, take = scanner_.TakeLater(), fault = fault_.fault, number = number_,
-                      corrupt = link_.corrupt, ply = config_.format == "ply"]() -> Written {
-    GiveWay();  // To the thread of the emulators, which keeps time.
-    try {
-      OrganizedCloud cloud = take();
-      cloud.label.clear();
-      cloud.X_NS = RigidTransform::Identity();
-      if (fault == ScanFault::kEmptyCloud) ClearPoints(cloud);
-      if (fault == ScanFault::kGarbage) {
-        WriteGarbage(hidden, number);
-      } else if (ply) {
-        WritePhoxiPly(cloud, static_cast<std::uint32_t>(number), hidden);
-      } else {
-        WritePcd(cloud, hidden);
-      }
-      if (fault == ScanFault::kTruncated) fs::resize_file(hidden, fs::file_size(hidden) / 5 * 3);
-      if (corrupt) CorruptFile(hidden);
-      return {hidden, ""};
-    } catch (const std::exception& error) {
-      return {"", error.what()};
+  hidden_ = config_.path + "/." + ScanFileNameOf(number_, ".part." + config_.format);
+  Do(Doing::kWriting, [hidden = hidden_, take = scanner_.TakeLater(), fault = fault_.fault,
+                       number = number_, corrupt = link_.corrupt, ply = config_.format == "ply"] {
+    OrganizedCloud cloud = take();
+    cloud.label.clear();
+    cloud.X_NS = RigidTransform::Identity();
+    if (fault == ScanFault::kEmptyCloud) ClearPoints(cloud);
+    if (fault == ScanFault::kGarbage) {
+      WriteGarbage(hidden, number);
+    } else if (ply) {
+      WritePhoxiPly(cloud, static_cast<std::uint32_t>(number), hidden);
+    } else {
+      WritePcd(cloud, hidden);
     }
-  };
-  writing_ = std::async(std::launch::async, write);
+    if (fault == ScanFault::kTruncated) fs::resize_file(hidden, fs::file_size(hidden) / 5 * 3);
+    if (corrupt) CorruptFile(hidden);
+  });
 }
 
 void ScannerFolderEmulator::Publish() {
-  const std::string hidden = *std::exchange(hidden_, std::nullopt);
-  if (link_.drop) {
-    fs::remove(hidden);
-    return;
-  }
   const std::string path = config_.path + "/" + ScanFileNameOf(number_, "." + config_.format);
-  if (link_.duplicate) {
-    const std::string copy = hidden + ".copy";
-    fs::copy_file(hidden, copy, fs::copy_options::overwrite_existing);
-    fs::rename(copy, path);
-  }
-  fs::rename(hidden, path);
-  ++answers_;
-  published_.push_back(path);
+  std::vector<std::string> old;
+  if (!link_.drop) published_.push_back(path);
   while (published_.size() > static_cast<std::size_t>(config_.keep)) {
-    fs::remove(published_.front());
+    old.push_back(published_.front());
     published_.pop_front();
   }
+  Do(Doing::kPublishing, [hidden = std::exchange(hidden_, {}), path, old = std::move(old),
+                          drop = link_.drop, twice = link_.duplicate] {
+    if (drop) {
+      fs::remove(hidden);
+      return;
+    }
+    if (twice) {
+      const std::string copy = hidden + ".copy";
+      fs::copy_file(hidden, copy, fs::copy_options::overwrite_existing);
+      fs::rename(copy, path);
+    }
+    fs::rename(hidden, path);
+    for (const std::string& file : old) fs::remove(file);
+  });
 }
 
 void ScannerFolderEmulator::Refuse(const std::string& reason) {
   if (link_.drop) return;
   const std::string path = config_.path + "/" + ScanFileNameOf(number_, ".error");
-  WriteFileAtomically(path, reason + "\n");
-  ++answers_;
   published_.push_back(path);
+  Do(Doing::kPublishing, [path, reason] { WriteFileAtomically(path, reason + "\n"); });
 }
 
 }  // namespace tubetwin

@@ -2,12 +2,12 @@
 
 #include <cstdint>
 #include <deque>
-#include <future>
-#include <optional>
+#include <functional>
 #include <string>
 
 #include "hw_bridge/base/config.h"
 #include "hw_bridge/cell/devices.h"
+#include "hw_bridge/emulators/errand_thread.h"
 #include "hw_bridge/emulators/scanner_emulator.h"
 
 namespace tubetwin {
@@ -35,11 +35,11 @@ class ScannerFolderEmulator : public ScannerEmulator {
   const std::string& path() const { return config_.path; }
 
  private:
-  struct Written {
-    std::string hidden;   ///< File under its hidden name; empty when it could not be written.
-    std::string problem;  ///< Then.
-  };
-  void TakeTrigger();
+  /// What the thread of files is about, or was when it is idle again.
+  enum class Doing { kNothing, kLooking, kWriting, kPublishing };
+  void Do(Doing what, std::function<void()> work);
+  void Settle(TimeNs now);
+  void LookForTrigger();
   void Start(std::uint64_t number);
   void FollowScan();
   void Write();
@@ -53,11 +53,16 @@ class ScannerFolderEmulator : public ScannerEmulator {
   std::uint64_t number_ = 0;  ///< Of the trigger that is served.
   ScanFaults::Ordered fault_;
   bool scanning_ = false;
-  std::future<Written> writing_;
-  std::optional<std::string> hidden_;  ///< Waits to be published.
+  std::string hidden_;  ///< File that waits to be published; empty: none does.
   TimeNs publish_at_{0};
-
   std::deque<std::string> published_;
+
+  Doing doing_ = Doing::kNothing;
+  // Of the thread of files while it works.
+  std::string problem_;
+  std::uint64_t found_ = 0;  ///< Newest trigger; 0: none.
+
+  ErrandThread files_;  ///< Last: ends before what it uses.
 };
 
 }  // namespace tubetwin

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <fstream>
 #include <thread>
+#include <utility>
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/files.h"
 #include "hw_bridge/base/json.h"
 #include "hw_bridge/cell/wall_clock.h"
+#include "hw_bridge/emulators/errand_thread.h"
 #include "twin/campaign/twin_setup.h"
 #include "twin/live/emulated_cell.h"
 #include "twin/live/fault_script.h"
@@ -22,7 +24,8 @@ namespace fs = std::filesystem;
 /// A pause of the machine shorter than this is caught up; clients notice nothing worse than jitter.
 constexpr TimeNs kMostLag = std::chrono::milliseconds(40);
 
-/// One line per event, each written at once: what is there after a kill is true.
+/// One line per event, written by a thread of files as soon as it is free: what is there after a
+/// kill is true.
 class EventLog {
  public:
   EventLog(const std::string& path, const EmulatedCell& cell)
@@ -30,15 +33,28 @@ class EventLog {
     if (!file_) throw Error(ErrorKind::kCannotCreate, path + ": cannot be written");
   }
   void Write(const char* kind, const std::string& what) {
-    file_ << Json{{"at_s", Seconds(cell_.now())}, {kind, what}}.dump() << '\n';
-    file_.flush();
+    lines_ += Json{{"at_s", Seconds(cell_.now())}, {kind, what}}.dump() + "\n";
+  }
+  /// Once per period. Throws Error(kIo) when the disk is full.
+  void Tick() {
+    if (lines_.empty() || !files_.idle()) return;
     if (!file_) throw Error(ErrorKind::kIo, path_ + ": writing failed (disk full?)");
+    files_.Start([this, lines = std::exchange(lines_, {})] { file_ << lines << std::flush; });
+  }
+  /// Until all is written.
+  void Finish() {
+    while (!lines_.empty() || !files_.idle()) {
+      Tick();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
 
  private:
-  std::ofstream file_;
+  std::ofstream file_;  ///< Of the thread of files while it works.
   std::string path_;
   const EmulatedCell& cell_;
+  std::string lines_;
+  ErrandThread files_;  ///< Last: ends before what it uses.
 };
 
 /// What `run --cell` needs of the scenario to find this cell.
@@ -91,6 +107,8 @@ EmulateResult Emulate(const Scenario& scenario, const EmulateOptions& options) {
   WriteFileAtomically((out / "cell.toml").string(), CellFile(cell, scenario, pile));
   if (options.progress) options.progress((out / "cell.toml").string());
 
+  // Faster than real time it may be busy without a pause, and would leave nothing to the others.
+  if (scenario.rate <= 1.0) KeepTime();
   const auto began = std::chrono::steady_clock::now();
   Pace pace(scenario.rate, FromSeconds(Seconds(kMostLag) * scenario.rate));
   while (!Ended(options, cell)) {
@@ -101,11 +119,13 @@ EmulateResult Emulate(const Scenario& scenario, const EmulateOptions& options) {
       continue;
     }
     cell.Step();
+    log.Tick();
     for (const std::string& line : script.Act(cell, cell.now())) {
       log.Write("fault", line);
       if (options.progress) options.progress(line);
     }
   }
+  log.Finish();
   WriteJsonFile(WhatLiesWhere(twin), (out / "world.json").string());
   EmulateResult result;
   result.cell_s = Seconds(cell.now());

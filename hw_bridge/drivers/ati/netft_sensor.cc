@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/parallel.h"
 #include "hw_bridge/base/text.h"
 #include "hw_bridge/codecs/netft_config.h"
 #include "hw_bridge/codecs/rdt.h"
@@ -178,7 +179,10 @@ NetftSensor::NetftSensor(const NetftConfig& config, const CellClock& clock) {
   impl_->scale = config.http_port == 0 ? Configured(config) : ScaleFromPage(config, limit);
   impl_->Connect();
   impl_->Receive();
-  impl_->thread = std::thread([impl = impl_.get()] { impl->io.run(); });
+  impl_->thread = std::thread([impl = impl_.get()] {
+    KeepTime();
+    impl->io.run();
+  });
   impl_->AwaitFirst(deadline);
 }
 

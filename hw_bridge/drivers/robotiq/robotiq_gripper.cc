@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/parallel.h"
 #include "hw_bridge/drivers/robotiq/modbus_client.h"
 
 namespace tubetwin {
@@ -156,6 +157,7 @@ int RobotiqGripper::unanswered() const {
 }
 
 void RobotiqGripper::Serve(const std::stop_token& stop) {
+  KeepTime();
   const auto period = Wait(std::max(kShortestPoll_s, kPoll_s / config_.rate));
   while (!stop.stop_requested() && Exchange()) {
     std::unique_lock lock(mutex_);

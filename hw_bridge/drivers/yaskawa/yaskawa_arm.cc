@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/parallel.h"
 #include "hw_bridge/drivers/yaskawa/arm_session.h"
 
 namespace tubetwin {
@@ -21,6 +22,7 @@ struct YaskawaArm::Impl {
   }
 
   void Serve(const std::stop_token& stop) {
+    KeepTime();
     std::chrono::nanoseconds wait{0};
     while (!stop.stop_requested()) {
       loop.Wait(wait);
