@@ -44,18 +44,6 @@ std::size_t SizeOf(const sm::Message& message) { return sm::Encode(message).size
 
 }  // namespace
 
-void ArmEmulatorConfig::Visit(ConfigVisitor& v) {
-  v.Field("listen", "address that the ports are opened on", listen);
-  v.Field("motion_port", "simple_message motion; 0: any free port", motion_port, {0, 65535});
-  v.Field("state_port", "simple_message state", state_port, {0, 65535});
-  v.Field("io_port", "simple_message I/O", io_port, {0, 65535});
-  v.Field("hses_port", "High-Speed Ethernet Server (UDP)", hses_port, {0, 65535});
-  v.Field("pulses_per_degree", "encoder pulses of each joint", pulses_per_degree, {10, 1e6});
-  v.Field("state_period_s", "between states that are pushed", state_period_s, {0.001, 1});
-  v.Field("servo_on_s", "from the request to powered drives", servo_on_s, {0, 4});
-  v.Field("servo_on", "drives are powered at the start", servo_on);
-}
-
 ArmEmulator::ArmEmulator(asio::io_context& io, ServoArm& arm, const ArmModel& model,
                          const ArmEmulatorConfig& config)
     : config_(config),

@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include "hw_bridge/base/config.h"
 #include "hw_bridge/emulators/arm_controller.h"
 #include "hw_bridge/emulators/emulator.h"
 #include "hw_bridge/emulators/hses_responder.h"
@@ -24,8 +23,6 @@ struct ArmEmulatorConfig {
   double state_period_s = 0.025;
   double servo_on_s = 0.2;
   bool servo_on = false;  ///< Drives are powered at the start.
-
-  void Visit(ConfigVisitor& v);
 };
 
 /// A YRC1000 with MotoROS 1 and High-Speed Ethernet Server over the drives of a cell's arm: one

@@ -14,13 +14,6 @@ constexpr TimeNs kEndOfFrame = std::chrono::milliseconds(50);
 
 }  // namespace
 
-void GripperEmulatorConfig::Visit(ConfigVisitor& v) {
-  v.Choice("transport", "Modbus over TCP, or RTU on a pseudo-terminal", transport, {"tcp", "rtu"});
-  v.Field("port", "tcp: port to listen on, 0 for any free one", port, {0, 65535});
-  v.Field("device", "rtu: link to the pseudo-terminal, made and removed", device);
-  v.Field("slave", "address of the gripper", slave, {1, 247});
-}
-
 GripperEmulator::GripperEmulator(asio::io_context& io, Gripper& gripper,
                                  const GripperEmulatorConfig& config)
     : controller_(gripper),

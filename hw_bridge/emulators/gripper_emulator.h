@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include "hw_bridge/base/config.h"
 #include "hw_bridge/emulators/emulator.h"
 #include "hw_bridge/emulators/gripper_controller.h"
 #include "hw_bridge/emulators/link_faults.h"
@@ -21,7 +20,6 @@ struct GripperEmulatorConfig {
   int port = 1502;     ///< tcp; 0: any free port.
   std::string device;  ///< rtu: link to the pseudo-terminal that is made; empty: no link.
   int slave = 9;
-  void Visit(ConfigVisitor& v);  ///< Not `listen`, which is the whole cell's.
 };
 
 /// A Robotiq 2F-85 on Modbus TCP, or on Modbus RTU over a pseudo-terminal, with the fingers of any

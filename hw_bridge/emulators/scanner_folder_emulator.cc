@@ -38,11 +38,6 @@ void WriteGarbage(const std::string& path, std::uint64_t seed) {
 
 }  // namespace
 
-void ScannerFolderConfig::Visit(ConfigVisitor& v) {
-  v.Choice("format", "files that scans are written as", format, {"pcd", "ply"});
-  v.Field("keep", "how many scans stay in the folder", keep, {1, 100000});
-}
-
 ScannerFolderEmulator::ScannerFolderEmulator(Scanner& scanner, const ScannerFolderConfig& config)
     : scanner_(scanner), config_(config) {
   MakeFolder(config_.path);

@@ -5,7 +5,6 @@
 #include <functional>
 #include <string>
 
-#include "hw_bridge/base/config.h"
 #include "hw_bridge/cell/devices.h"
 #include "hw_bridge/emulators/errand_thread.h"
 #include "hw_bridge/emulators/scanner_emulator.h"
@@ -13,10 +12,9 @@
 namespace tubetwin {
 
 struct ScannerFolderConfig {
-  std::string path;              ///< Created when missing.
-  std::string format = "pcd";    ///< "pcd" (exact) or "ply" (as PhoXi saves it, millimetres).
-  int keep = 8;                  ///< Answers that stay; older ones of this emulator are removed.
-  void Visit(ConfigVisitor& v);  ///< Not the path, which is the cell's.
+  std::string path;            ///< Created when missing.
+  std::string format = "pcd";  ///< "pcd" (exact) or "ply" (as PhoXi saves it, millimetres).
+  int keep = 8;                ///< Answers that stay; older ones of this emulator are removed.
 };
 
 /// The feed of a scan folder (hw_bridge/codecs/scan_folder.h) over any Scanner. A trigger starts a

@@ -26,17 +26,6 @@ std::string HttpAnswer(const char* status, const char* type, const std::string& 
 
 }  // namespace
 
-void WristEmulatorConfig::Visit(ConfigVisitor& v) {
-  v.Field("port", "UDP port of raw data transfer, 0 for any free one", port, {0, 65535});
-  v.Field("http_port", "TCP port of the configuration page, 0 for any free one", http_port,
-          {0, 65535});
-  v.Field("counts_per_N", "counts of a newton", counts_per_N, {1, 1e8});
-  v.Field("counts_per_Nm", "counts of a newton metre", counts_per_Nm, {1, 1e8});
-  v.Field("rate_Hz", "records per second", rate_Hz, {1, 7000});
-  v.Field("threshold_N", "a larger force latches the threshold bit; 0: none", threshold_N,
-          {0, 1e6});
-}
-
 struct WristEmulator::Udp {
   explicit Udp(asio::io_context& io) : socket(io) {}
   udp::socket socket;

@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include "hw_bridge/base/config.h"
 #include "hw_bridge/cell/devices.h"
 #include "hw_bridge/codecs/netft_config.h"
 #include "hw_bridge/codecs/rdt.h"
@@ -20,9 +19,8 @@ struct WristEmulatorConfig {
   int port = 49152;      ///< UDP, raw data transfer; 0: any free port.
   int http_port = 8049;  ///< TCP, configuration page; 0: any free port.
   double counts_per_N = 1e6, counts_per_Nm = 1e6;
-  double rate_Hz = 1000;         ///< Records per second of cell time, 1 to 7000.
-  double threshold_N = 0;        ///< A larger force latches the threshold bit; 0: none does.
-  void Visit(ConfigVisitor& v);  ///< Not `listen`, which is the whole cell's.
+  double rate_Hz = 1000;   ///< Records per second of cell time, 1 to 7000.
+  double threshold_N = 0;  ///< A larger force latches the threshold bit; 0: none does.
 };
 
 /// An ATI Net F/T box with the readings of any ForceTorqueSensor: raw data transfer over UDP

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 
 #include "hw_bridge/base/error.h"
@@ -11,8 +10,6 @@
 
 namespace tubetwin {
 namespace {
-
-volatile std::sig_atomic_t g_stop = 0;  // Signal handlers may touch nothing else.
 
 /// Tells of a running shard: in place on a terminal, else a line now and then.
 class Teller {
@@ -44,9 +41,7 @@ class Teller {
 int RunCampaignAloud(const Campaign& campaign, CampaignRunOptions options, const Common& common) {
   if (options.jobs <= 0) options.jobs = Parallelism::All().threads;
   options.program_version = TUBETWIN_VERSION;
-  std::signal(SIGTERM, [](int) { g_stop = 1; });
-  std::signal(SIGINT, [](int) { g_stop = 1; });
-  options.stop_requested = [] { return g_stop != 0; };
+  options.stop_requested = StopOnSignals();
   CampaignRun run;
   {
     Teller teller(common);

@@ -2,13 +2,20 @@
 
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
+#include <filesystem>
 
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/base/error.h"
 
 namespace tubetwin {
+namespace {
+
+volatile std::sig_atomic_t g_stop = 0;  // Signal handlers may touch nothing else.
+
+}  // namespace
 
 void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc,
                       bool out_required) {
@@ -38,6 +45,17 @@ Scenario LoadScenario(const std::vector<std::string>& files, const Common& commo
   Scenario scenario = ReadScenario(source, profile);
   if (common.seed) scenario.seed = *common.seed;
   return scenario;
+}
+
+std::string FolderOf(const std::string& file) {
+  const std::filesystem::path parent = std::filesystem::path(file).parent_path();
+  return parent.empty() ? "." : parent.string();
+}
+
+std::function<bool()> StopOnSignals() {
+  std::signal(SIGTERM, [](int) { g_stop = 1; });
+  std::signal(SIGINT, [](int) { g_stop = 1; });
+  return [] { return g_stop != 0; };
 }
 
 void Say(const Common& common, const std::string& line) {

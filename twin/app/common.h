@@ -42,6 +42,12 @@ void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc
 Scenario LoadScenario(const std::vector<std::string>& files, const Common& common,
                       const std::string& profile = "");
 
+/// The folder that relative names in a file refer to: its own, "." for a bare or empty name.
+std::string FolderOf(const std::string& file);
+
+/// From here on SIGTERM and SIGINT only ask for an end; the function tells whether they have.
+std::function<bool()> StopOnSignals();
+
 /// A line to stderr unless quiet.
 void Say(const Common& common, const std::string& line);
 

@@ -114,9 +114,7 @@ int Doctor(const std::string& cell_file, const Common& common) {
   if (cell_file.empty()) {
     findings = Examine();
   } else {
-    const auto slash = cell_file.rfind('/');
-    findings = ExamineCell(LoadScenario({cell_file}, common),
-                           slash == std::string::npos ? "." : cell_file.substr(0, slash + 1));
+    findings = ExamineCell(LoadScenario({cell_file}, common), FolderOf(cell_file));
   }
   int missing = 0;
   Json json = Json::array();

@@ -1,6 +1,4 @@
-#include <csignal>
 #include <cstdio>
-#include <filesystem>
 
 #include <CLI/CLI.hpp>
 
@@ -10,10 +8,6 @@
 
 namespace tubetwin {
 namespace {
-
-namespace fs = std::filesystem;
-
-volatile std::sig_atomic_t g_stop = 0;  // Signal handlers may touch nothing else.
 
 struct EmulateChoice {
   std::string scenario, listen = "127.0.0.1", faults;
@@ -27,8 +21,7 @@ int RunEmulate(const EmulateChoice& choice, const Common& common) {
   Scenario scenario = LoadScenario(files, common);
   if (choice.rate > 0.0) scenario.rate = choice.rate;
   EmulateOptions options;
-  const fs::path parent = fs::path(choice.scenario).parent_path();
-  options.scenario_folder = parent.empty() ? "." : parent.string();
+  options.scenario_folder = FolderOf(choice.scenario);
   options.out_folder = common.out;
   options.listen = choice.listen;
   options.any_ports = choice.any_ports;
@@ -36,9 +29,7 @@ int RunEmulate(const EmulateChoice& choice, const Common& common) {
   options.faults_file = choice.faults;
   options.for_s = choice.for_s;
   options.parallelism = common.parallelism();
-  std::signal(SIGTERM, [](int) { g_stop = 1; });
-  std::signal(SIGINT, [](int) { g_stop = 1; });
-  options.stop_requested = [] { return g_stop != 0; };
+  options.stop_requested = StopOnSignals();
   bool ready = false;
   options.progress = [&](const std::string& line) {
     if (!ready) Say(common, "listening; now: tubetwin run --cell " + line + " --out DIR");

@@ -1,6 +1,5 @@
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -19,8 +18,6 @@
 namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
-
-volatile std::sig_atomic_t g_stop = 0;  // Signal handlers may touch nothing else.
 
 /// "placed>=7": a number of summary.json and what it must be.
 struct Requirement {
@@ -75,11 +72,6 @@ struct RunOptions {
   std::vector<std::string> require;
   bool video = false, record = false, force = false, dry = false;
 };
-
-std::string FolderOf(const std::string& file) {
-  const fs::path parent = fs::path(file).parent_path();
-  return parent.empty() ? "." : parent.string();
-}
 
 /// Asks whoever sits at the terminal; nobody there is no word.
 Acknowledgement AskOperator(const std::string& what) {
@@ -163,9 +155,7 @@ int Run(const RunOptions& run, const Common& common) {
   options.program_version = TUBETWIN_VERSION;
   ProgressLine progress(!common.quiet);
   options.progress = [&](const std::string& text) { progress.Show(text); };
-  std::signal(SIGTERM, [](int) { g_stop = 1; });
-  std::signal(SIGINT, [](int) { g_stop = 1; });
-  options.stop_requested = [] { return g_stop != 0; };
+  options.stop_requested = StopOnSignals();
   const RoundResult result = RunAnywhere(run, scenario, options);
 
   const Json& s = result.summary;

@@ -134,7 +134,6 @@ ArmEmulator& EmulatedCell::arm() { return impl_->arm; }
 GripperEmulator& EmulatedCell::gripper() { return impl_->gripper; }
 WristEmulator& EmulatedCell::wrist() { return impl_->wrist; }
 ScannerEmulator& EmulatedCell::scanner() { return *impl_->scanner; }
-const CycleMoments& EmulatedCell::moments() const { return impl_->moments; }
 
 Scenario EmulatedCell::Reaching() const {
   Scenario out = impl_->scenario;

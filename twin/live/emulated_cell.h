@@ -45,7 +45,6 @@ class EmulatedCell {
   GripperEmulator& gripper();
   WristEmulator& wrist();
   ScannerEmulator& scanner();
-  const CycleMoments& moments() const;
 
   /// The scenario with devices that reach this cell, for a cell file.
   Scenario Reaching() const;

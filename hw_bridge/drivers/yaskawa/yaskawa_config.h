@@ -2,8 +2,6 @@
 
 #include <string>
 
-#include "hw_bridge/base/config.h"
-
 namespace tubetwin {
 
 /// How to reach a Yaskawa controller that runs MotoROS 1: `[cell.arm]` of a cell file.
@@ -16,10 +14,9 @@ struct YaskawaConfig {
   double pulses_per_degree = 1000;  ///< Of the coarsest axis: the controller compares starts in it.
   /// Without it nothing is sent: the motion port is not even connected.
   bool armed = false;
-  /// Cell time per wall time: of the whole cell, so the cell file's own key and not visited here.
+  /// Cell time per wall time: of the whole cell, so the cell file's own key.
   double rate = 1.0;
 
-  void Visit(ConfigVisitor& v);
   /// Throws Error(kConfig) for what the fields' own ranges cannot say.
   void ValidateOrThrow() const;
 };
