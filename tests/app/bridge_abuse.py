@@ -10,11 +10,11 @@ import subprocess
 import sys
 import tempfile
 import time
-import tomllib
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import motoman as yrc  # noqa: E402
-from emulation import Emulation  # noqa: E402
+from checks import check, finish  # noqa: E402
+from emulation import Emulation, resident_MB  # noqa: E402
 from motoman import h  # noqa: E402
 
 PROGRAM = sys.argv[1]
@@ -23,18 +23,6 @@ ACTIVATE = h("0001 0000 000d 09 10 03e8 0003 06 0100 0000 0000")
 READ_STATUS = h("0002 0000 0006 09 03 07d0 0003")
 RDT_ONE_RECORD = h("1234 0002 00000001")
 GET_PAGE = b"GET /netftapi2.xml HTTP/1.0\r\n\r\n"
-failures = []
-
-
-def check(holds, what):
-    if not holds:
-        failures.append(what)
-        print("FAILED:", what, flush=True)
-
-
-def memory_mb(pid):
-    with open(f"/proc/{pid}/status") as file:
-        return next(int(line.split()[1]) / 1024 for line in file if line.startswith("VmRSS"))
 
 
 class Ports:
@@ -158,11 +146,10 @@ def others_serve(ports):
 
 with tempfile.TemporaryDirectory() as top:
     emulation = Emulation(PROGRAM, top + "/e", overrides=["seed=3", "pile.count=1"], options=["--for", "600"])
-    with open(emulation.cell, "rb") as file:
-        ports = Ports(tomllib.load(file)["cell"])
+    ports = Ports(emulation.devices())
     state = yrc.State(ports.state)
     state.next()
-    before_mb = memory_mb(emulation.process.pid)
+    before_mb = resident_MB(emulation.process.pid)
     bad, connections = offend(ports), flood(ports)
     check(emulation.process.poll() is None, "emulate still runs")
     moved = [e for e in emulation.events() if e.get("event") in ("arm moves", "open", "close")]
@@ -171,9 +158,9 @@ with tempfile.TemporaryDirectory() as top:
     others_serve(ports)
     doctor = subprocess.run([PROGRAM, "doctor", "--cell", emulation.cell], capture_output=True, text=True, timeout=120)
     check(doctor.returncode == 0, "doctor reads every device: " + doctor.stdout + doctor.stderr)
-    after_mb = memory_mb(emulation.process.pid)
+    after_mb = resident_MB(emulation.process.pid)
     check(after_mb < before_mb + 20, f"memory goes from {before_mb:.0f} to {after_mb:.0f} MB")
     emulation.stop()
     check(emulation.process.returncode == 0, f"emulate ends with {emulation.process.returncode}")
     print(f"{bad} bad messages, {connections} connections at once, {before_mb:.0f} MB before, {after_mb:.0f} after")
-sys.exit(1 if failures else 0)
+finish()

@@ -6,15 +6,14 @@ import os
 import signal
 import struct
 import sys
-import tempfile
 import time
-import tomllib
 
 import NetFT
 import pynetft
 from pymodbus.client import ModbusSerialClient, ModbusTcpClient
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from checks import check, run_tests  # noqa: E402
 from emulation import Emulation, Run  # noqa: E402
 from motoman import h  # noqa: E402
 
@@ -23,18 +22,6 @@ ONE_TUBE = ["seed=3", "pile.count=1"]
 BOUNDED = ["--for", "2400"]  # Should this test be killed.
 ACTION, STATUS, SLAVE = 0x03E8, 0x07D0, 9
 TOOL_N = (0.93 + 0.10) * 9.81  # Gripper and coupling hang on the sensor.
-failures = []
-
-
-def check(holds, what):
-    if not holds:
-        failures.append(what)
-        print("FAILED:", what, flush=True)
-
-
-def devices(emulation):
-    with open(emulation.cell, "rb") as file:
-        return tomllib.load(file)["cell"]
 
 
 class Gripper:
@@ -102,7 +89,7 @@ def activate_close_open(gripper):
 
 def modbus_tcp(folder):
     emulation = Emulation(PROGRAM, folder + "/e", overrides=ONE_TUBE, options=BOUNDED)
-    port = devices(emulation)["gripper"]["port"]
+    port = emulation.devices()["gripper"]["port"]
     gripper = Gripper(lambda trace: ModbusTcpClient("127.0.0.1", port=port, timeout=10, trace_packet=trace))
     activate_close_open(gripper)
     gripper.client.close()
@@ -113,7 +100,7 @@ def modbus_rtu(folder):
     """The same over the pseudo-terminal, and the manual's frames are on it, check sums and all."""
     emulation = Emulation(PROGRAM, folder + "/e", overrides=[*ONE_TUBE, "cell.gripper.driver=modbus_rtu"],
                           options=BOUNDED)
-    device = devices(emulation)["gripper"]["device"]
+    device = emulation.devices()["gripper"]["device"]
     gripper = Gripper(lambda trace: ModbusSerialClient(device, baudrate=115200, timeout=5, trace_packet=trace))
     gripper.client.socket.write(b"\x09\x03garbage before the first frame")
     time.sleep(0.5)
@@ -143,7 +130,7 @@ def object_in_the_fingers(folder):
     run.process.send_signal(signal.SIGKILL)
     _, err = run.wait(30)
     check(ended is None, f"a tube is carried; the run has ended with {ended}: {err}")
-    port = devices(emulation)["gripper"]["port"]
+    port = emulation.devices()["gripper"]["port"]
     gripper = Gripper(lambda trace: ModbusTcpClient("127.0.0.1", port=port, timeout=10, trace_packet=trace))
     held = gripper.until(lambda *s: s[3] == 2, "an object held")
     opening_mm = 85 * (230 - held[6]) / 227
@@ -173,7 +160,7 @@ class Logged:
 def rdt_netft(folder):
     """PyPI's NetFT: counted records without gaps, the stream, bias by the box."""
     emulation = Emulation(PROGRAM, folder + "/e", overrides=ONE_TUBE, options=BOUNDED)
-    wrist = devices(emulation)["wrist"]
+    wrist = emulation.devices()["wrist"]
     sensor = NetFT.Sensor("127.0.0.1")
     sensor.sock.connect(("127.0.0.1", wrist["port"]))
     sensor.sock.settimeout(20.0)
@@ -203,7 +190,7 @@ def rdt_netft(folder):
 def rdt_pynetft(folder):
     """PyPI's pynetft: counts and units by the box's page, newtons, health of the stream, bias."""
     emulation = Emulation(PROGRAM, folder + "/e", overrides=ONE_TUBE, options=BOUNDED)
-    wrist = devices(emulation)["wrist"]
+    wrist = emulation.devices()["wrist"]
     config = pynetft.Config(sensor_host="127.0.0.1", rdt_port=wrist["port"], http_port=wrist["http_port"],
                             receive_timeout=5.0, configuration_connect_timeout=10.0, configuration_timeout=20.0)
     with pynetft.Client(config, queue_size=4096) as client:
@@ -227,11 +214,4 @@ def rdt_pynetft(folder):
     emulation.stop()
 
 
-with tempfile.TemporaryDirectory() as top:
-    for test in (modbus_tcp, modbus_rtu, object_in_the_fingers, rdt_netft, rdt_pynetft):
-        folder = os.path.join(top, test.__name__)
-        os.mkdir(folder)
-        began = time.monotonic()
-        test(folder)
-        print(f"{test.__name__}: {time.monotonic() - began:.1f} s", flush=True)
-sys.exit(1 if failures else 0)
+run_tests(modbus_tcp, modbus_rtu, object_in_the_fingers, rdt_netft, rdt_pynetft)

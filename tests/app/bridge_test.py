@@ -6,21 +6,14 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from checks import check, run_tests  # noqa: E402
 from emulation import Emulation, Run  # noqa: E402
 
 PROGRAM = sys.argv[1]
 ONE_TUBE = ["seed=3", "pile.count=1"]
-failures = []
-
-
-def check(holds, what):
-    if not holds:
-        failures.append(what)
-        print("FAILED:", what, flush=True)
 
 
 def events(emulation, kind):
@@ -106,11 +99,4 @@ def what_may_not_move(folder):
     emulation.stop()
 
 
-with tempfile.TemporaryDirectory() as top:
-    for test in (a_round_over_the_wire, killed_or_frozen_while_carrying, what_may_not_move):
-        folder = os.path.join(top, test.__name__)
-        os.mkdir(folder)
-        began = time.monotonic()
-        test(folder)
-        print(f"{test.__name__}: {time.monotonic() - began:.1f} s", flush=True)
-sys.exit(1 if failures else 0)
+run_tests(a_round_over_the_wire, killed_or_frozen_while_carrying, what_may_not_move)

@@ -6,12 +6,11 @@ import os
 import socket
 import struct
 import sys
-import tempfile
 import time
-import tomllib
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 import motoman as yrc  # noqa: E402
+from checks import check, run_tests  # noqa: E402
 from emulation import Emulation, Run  # noqa: E402
 from motoman import h  # noqa: E402
 from wire import Wire, alone_or_exit, inet_sockets  # noqa: E402
@@ -19,18 +18,6 @@ from wire import Wire, alone_or_exit, inet_sockets  # noqa: E402
 PROGRAM = sys.argv[1]
 ONE_TUBE = ["seed=3", "pile.count=1"]
 BOUNDED = ["--for", "1200"]  # Should this test be killed.
-failures = []
-
-
-def check(holds, what):
-    if not holds:
-        failures.append(what)
-        print("FAILED:", what, flush=True)
-
-
-def devices(emulation):
-    with open(emulation.cell, "rb") as file:
-        return tomllib.load(file)["cell"]
 
 
 def pdu(link, slave, request):
@@ -44,7 +31,7 @@ def pdu(link, slave, request):
 def raw_client_drives_the_arm(folder):
     """Nothing but the byte tables: readies, streams points, is refused, watches it move."""
     emulation = Emulation(PROGRAM, folder + "/e", overrides=ONE_TUBE, options=BOUNDED)
-    arm = devices(emulation)["arm"]
+    arm = emulation.devices()["arm"]
     state, motion = yrc.State(arm["state_port"]), yrc.Motion(arm["motion_port"])
     check(yrc.ask(motion.link, yrc.PING, 16) == yrc.PING_REPLY, "PING")
     check(motion.result(yrc.CHECK_MOTION_READY) == (2, 5006), "drives are off at first")
@@ -98,7 +85,7 @@ def supervise(arm, state):
 
 def listens_on_loopback_only(emulation):
     of = inet_sockets(emulation.process.pid)
-    cell = devices(emulation)
+    cell = emulation.devices()
     expected = {cell["arm"][p] for p in ("motion_port", "state_port", "io_port", "hses_port")}
     expected |= {cell["gripper"]["port"], cell["wrist"]["port"], cell["wrist"]["http_port"]}
     listening = {local[1] for _, local, remote in of if remote[1] == 0}
@@ -127,7 +114,7 @@ def frames_of_a_round(folder):
     code, err = run.wait(300)
     check(code == 0, f"the round ends with 0: {code} {err}")
     listens_on_loopback_only(emulation)
-    cell = devices(emulation)
+    cell = emulation.devices()
     emulation.stop()
     wire.close()
     print(f"{wire.packets} packets; run connected to {sorted(seen)}", flush=True)
@@ -191,11 +178,4 @@ def check_wrist_frames(wire, wrist):
 
 
 alone_or_exit()
-with tempfile.TemporaryDirectory() as top:
-    for test in (raw_client_drives_the_arm, frames_of_a_round):
-        folder = os.path.join(top, test.__name__)
-        os.mkdir(folder)
-        began = time.monotonic()
-        test(folder)
-        print(f"{test.__name__}: {time.monotonic() - began:.1f} s", flush=True)
-sys.exit(1 if failures else 0)
+run_tests(raw_client_drives_the_arm, frames_of_a_round)

@@ -19,18 +19,7 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, "..", "support"))
-from emulation import Emulation, Run  # noqa: E402
-
-
-def resident_MB(pid):
-    try:
-        with open(f"/proc/{pid}/status") as file:
-            for line in file:
-                if line.startswith("VmRSS"):
-                    return int(line.split()[1]) / 1024
-    except OSError:
-        pass
-    return None
+from emulation import Emulation, Run, resident_MB  # noqa: E402
 
 
 def growth(samples):

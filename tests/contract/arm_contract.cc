@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "hw_bridge/base/error.h"
+#include "tests/contract/advance.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin::test {
 namespace {
 
 constexpr double kStanding_rad = 0.002;
-constexpr double kPatience_s = 30.0;
 
 CheckedTrajectory Checked(JointTrajectory trajectory) {
   const auto checked = CheckTrajectory(Hc10(), std::move(trajectory));
@@ -46,20 +46,6 @@ CheckedTrajectory Waving(const JointVector& from, double by_rad, double duration
 
 double Farthest(const JointVector& a, const JointVector& b) {
   return (a - b).cwiseAbs().maxCoeff();
-}
-
-template <typename Condition>
-void AdvanceUntil(Cell& cell, Condition condition) {
-  const TimeNs end = cell.clock.Now() + FromSeconds(kPatience_s);
-  while (!condition()) {
-    REQUIRE(cell.clock.Now() < end);
-    cell.clock.AdvanceTo(cell.clock.Now() + kControlPeriod);
-  }
-}
-
-ArmState WaitUntilStill(Cell& cell) {
-  AdvanceUntil(cell, [&] { return cell.arm.State().mode != ArmMode::kMoving; });
-  return cell.arm.State();
 }
 
 /// There, at rest and ready.

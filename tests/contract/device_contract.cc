@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "models/gripper_spec.h"
+#include "tests/contract/advance.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin::test {
@@ -14,7 +15,6 @@ constexpr double kStanding_rad = 0.002;
 constexpr double kOpening_m = 0.0008;
 /// A sample older than this is not the newest one of a sensor of 7000 to 100 Hz.
 constexpr TimeNs kOldest = std::chrono::milliseconds(25);
-constexpr double kPatience_s = 30.0;
 
 CheckedTrajectory Moved(const JointVector& from, double by_rad, double duration_s) {
   TrajectoryPoint a, b;
@@ -28,20 +28,6 @@ CheckedTrajectory Moved(const JointVector& from, double by_rad, double duration_
 
 double Farthest(const JointVector& a, const JointVector& b) {
   return (a - b).cwiseAbs().maxCoeff();
-}
-
-template <typename Condition>
-void AdvanceUntil(Cell& cell, Condition condition) {
-  const TimeNs end = cell.clock.Now() + FromSeconds(kPatience_s);
-  while (!condition()) {
-    REQUIRE(cell.clock.Now() < end);
-    cell.clock.AdvanceTo(cell.clock.Now() + kControlPeriod);
-  }
-}
-
-ArmState WaitUntilStill(Cell& cell) {
-  AdvanceUntil(cell, [&] { return cell.arm.State().mode != ArmMode::kMoving; });
-  return cell.arm.State();
 }
 
 }  // namespace

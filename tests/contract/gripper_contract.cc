@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/contract/advance.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin::test {
@@ -10,18 +11,8 @@ namespace {
 constexpr double kCount_m = 0.085 / 227.0;  ///< One count of the position register.
 /// The servo is soft where the tips' weight pulls on it: one count, and one of rounding.
 constexpr double kStands_m = 2 * kCount_m;
-constexpr double kPatience_s = 30.0;
 
 const GripperSpec kSpec;
-
-template <typename Condition>
-void AdvanceUntil(Cell& cell, Condition condition) {
-  const TimeNs end = cell.clock.Now() + FromSeconds(kPatience_s);
-  while (!condition()) {
-    REQUIRE(cell.clock.Now() < end);
-    cell.clock.AdvanceTo(cell.clock.Now() + kControlPeriod);
-  }
-}
 
 /// Commands, and what the state says when it first says no longer that it moves.
 GripperState MoveTo(Cell& cell, const GripperCommand& command) {

@@ -5,6 +5,16 @@ import os
 import signal
 import subprocess
 import time
+import tomllib
+
+
+def resident_MB(pid):
+    """Memory of a process, None when it is gone."""
+    try:
+        with open(f"/proc/{pid}/status") as file:
+            return next((int(line.split()[1]) / 1024 for line in file if line.startswith("VmRSS")), None)
+    except OSError:
+        return None
 
 
 class Emulation:
@@ -34,6 +44,11 @@ class Emulation:
         self.process.kill()
         self.log.seek(0)
         raise RuntimeError("emulate did not begin to listen: " + self.log.read())
+
+    def devices(self):
+        """The tables [cell.*] of its cell file."""
+        with open(self.cell, "rb") as file:
+            return tomllib.load(file)["cell"]
 
     def events(self):
         """Lines of events.jsonl so far: [{at_s, event | fault}]."""
