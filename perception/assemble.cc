@@ -18,6 +18,10 @@ constexpr double kRadiusWeight = 20.0;
 /// Somewhere a tube shows enough of its roundness (rms sine of the normals; a strip of a third of
 /// the upper half has this): a stick's edge or a fold does not.
 constexpr double kRound = 0.3;
+/// A wall's shadow leaves one side of a tube beside it: less of the roundness, but normals that
+/// meet at the part's radius, which no edge has.
+constexpr double kOneSideRound = 0.2;
+constexpr double kSameRadius = 0.1;
 /// Shorter lacks are within the error of two ends.
 constexpr double kLack_m = 0.002;
 
@@ -104,9 +108,12 @@ bool HasOtherRadius(const Chain& chain, const std::vector<Fragment>& fragments, 
          (sum < kThinnest * radius_m * weight || sum > kThickest * radius_m * weight);
 }
 
-bool IsRound(const Chain& chain, const std::vector<Fragment>& fragments) {
+bool IsRound(const Chain& chain, const std::vector<Fragment>& fragments, double radius_m) {
   return std::any_of(chain.ends.begin(), chain.ends.end(), [&](int e) {
-    return fragments[static_cast<std::size_t>(e / 2)].normal_spread >= kRound;
+    const Fragment& f = fragments[static_cast<std::size_t>(e / 2)];
+    if (f.normal_spread >= kRound) return true;
+    return f.normal_spread >= kOneSideRound && f.radius_weight > kRadiusWeight &&
+           std::abs(f.radius_m - radius_m) <= kSameRadius * radius_m;
   });
 }
 
@@ -135,7 +142,7 @@ std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
   for (const Chain* chain : order) {
     PerceivedTube tube = Concatenate(*chain, fragments, bridges);
     const double seen_m = SeenLength(tube);
-    if (seen_m < least_m || !IsRound(*chain, fragments)) continue;
+    if (seen_m < least_m || !IsRound(*chain, fragments, space.radius_m())) continue;
     if (HasOtherRadius(*chain, fragments, space.radius_m())) continue;
     if (!TouchesBin(tube.centerline_N, bin)) continue;
     const double lack_m = tube_length_m - chain->length_m;
