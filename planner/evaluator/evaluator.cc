@@ -1,15 +1,18 @@
 #include "planner/evaluator/evaluator.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <numeric>
 
 #include "hw_bridge/base/error.h"
 #include "hw_bridge/base/text.h"
 #include "planner/evaluator/rollout.h"
 #include "planner/evaluator/rollout_scene.h"
+#include "planner/removal_order.h"
 #include "planner/sweep.h"
 
 namespace tubetwin {
@@ -52,6 +55,22 @@ void ValidateTurns(const CandidateMotion& candidate, const std::string& who) {
   }
 }
 
+double WayOf(const CandidateMotion& motion) {
+  double way_m = 0.0;
+  for (std::size_t i = 1; i < motion.waypoints_N.size(); ++i) {
+    way_m += (motion.waypoints_N[i] - motion.waypoints_N[i - 1]).norm();
+  }
+  return way_m;
+}
+
+double DurationOf(const CandidateMotion& motion) {
+  double turn_rad = 0.0;
+  for (std::size_t i = 1; i < motion.rotations_N.size(); ++i) {
+    turn_rad += motion.rotations_N[i - 1].angularDistance(motion.rotations_N[i]);
+  }
+  return WayOf(motion) / motion.speed_m_s + turn_rad / motion.turn_speed_rad_s;
+}
+
 void Validate(const TubeScene& scene, const EvaluationRequest& request,
               const EvaluatorConfig& config) {
   TT_CHECK(request.grasp_at_m.size() == request.candidates.size());
@@ -68,15 +87,9 @@ void Validate(const TubeScene& scene, const EvaluationRequest& request,
                   who + "held at " + Number(at_m) + " m, allowed 0 to " + Number(length_m) + " m");
     }
     ValidateTurns(candidate, who);
-    double way_m = 0.0, turn_rad = 0.0;
-    for (std::size_t i = 1; i < candidate.waypoints_N.size(); ++i) {
-      way_m += (candidate.waypoints_N[i] - candidate.waypoints_N[i - 1]).norm();
-      if (!candidate.turns()) continue;
-      turn_rad += candidate.rotations_N[i - 1].angularDistance(candidate.rotations_N[i]);
-    }
-    if (candidate.waypoints_N.empty() || !std::isfinite(way_m) || !(candidate.speed_m_s > 0.0) ||
-        way_m / candidate.speed_m_s + turn_rad / candidate.turn_speed_rad_s > config.max_sim_s) {
-      throw Error(ErrorKind::kBadData, who + "a way of " + Number(way_m) + " m at " +
+    if (candidate.waypoints_N.empty() || !(candidate.speed_m_s > 0.0) ||
+        !(DurationOf(candidate) <= config.max_sim_s)) {
+      throw Error(ErrorKind::kBadData, who + "a way of " + Number(WayOf(candidate)) + " m at " +
                                            Number(candidate.speed_m_s) + " m/s, at most " +
                                            Number(config.max_sim_s) + " s are simulated");
     }
@@ -243,12 +256,31 @@ class Evaluation {
     });
   }
 
+  // Tasks (candidate, sample) in the order of their start: those that will take long first, so that
+  // no thread is left alone with one at the end. Lifting more tubes takes longer.
+  std::vector<int> LongestFirst(const std::vector<int>& to_run) const {
+    std::map<int, int> lifted;
+    for (const RemovalRank& rank : RemovalOrder(scene_)) lifted[rank.tube] = 1 + rank.blockers;
+    std::vector<double> work;
+    for (const int k : to_run) {
+      const CandidateMotion& motion = request_.candidates[k];
+      work.push_back(lifted[motion.tube] * DurationOf(motion));
+    }
+    std::vector<int> order(to_run.size() * static_cast<std::size_t>(samples_));
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](int a, int b) { return work[a / samples_] > work[b / samples_]; });
+    return order;
+  }
+
   void RollOutAll(const std::vector<int>& to_run) {
     const int count = static_cast<int>(to_run.size()) * samples_;
     std::vector<RolloutOutcome> outcomes(count);
     std::vector<double> wall_s(count, 0.0);
     std::vector<Worker> workers(options_.parallelism.threads);
-    ParallelFor(count, options_.parallelism, [&](int task, int index) {
+    const std::vector<int> order = LongestFirst(to_run);
+    ParallelFor(count, options_.parallelism, [&](int place, int index) {
+      const int task = order[place];
       const int candidate = to_run[task / samples_];
       const RolloutScene& scene = *scenes_[task % samples_];
       Worker& worker = workers[index];
@@ -292,6 +324,9 @@ void EvaluatorConfig::Visit(ConfigVisitor& v) {
   v.Field("jam_s", "a hand that is saturated for longer is jammed", jam_s, {0.0, 10.0});
   v.Field("hold_s", "waiting after the motion, before displacements are taken", hold_s,
           {0.0, 10.0});
+  v.Field("give_up_m",
+          "a roll-out that has displaced the others by more ends, its cost a lower bound",
+          give_up_m, {0.01, 1000.0});
   v.Field("max_sim_s", "longest motion that is accepted", max_sim_s, {1.0, 600.0});
   v.Field("pose_error_m", "samples after the first: sigma of each tube's position, per axis",
           pose_error_m, {0.0, 0.02});

@@ -12,7 +12,9 @@ struct EvaluatorConfig {
   double hand_force_N = 30.0;  ///< Of the hand on each axis; more than that is a jam.
   double jam_s = 0.2;          ///< Saturated for longer: jammed.
   double hold_s = 0.3;         ///< After the motion, before the displacement is taken.
-  double max_sim_s = 30.0;     ///< Longest motion that is accepted.
+  /// A roll-out that has displaced the others by more ends: far more than what one takes for good.
+  double give_up_m = 0.75;
+  double max_sim_s = 30.0;  ///< Longest motion that is accepted.
   /// Samples after the first: one sigma of each perceived tube's position error, per axis.
   double pose_error_m = 0.0007;
   void Visit(ConfigVisitor& v);
@@ -38,10 +40,11 @@ struct EvaluatorOptions {
 /// cost = displacement + 1 m * extra_probability (samples = 1: displacement alone, as in the paper)
 /// + 1 m when jammed, + 10 m when diverged. Status: diverged when any sample did, jammed when half
 /// of them or more did, pruned when the swept volumes of tube and fingers touch no other tube. A
-/// roll-out ends early on a jam or when all others are at rest and the lifted tube is a radius over
-/// them or only rises from there on with none of them over it. Tubes that lie still sleep until
-/// they are touched. `full`: none of the pruning and shortening. sim_s and wall_s are sums over the
-/// samples' roll-outs.
+/// roll-out ends early on a jam, when all others are at rest and the lifted tube is a radius over
+/// them or only rises from there on with none of them over it, or when the displacement exceeds
+/// give_up_m: then it is a lower bound, and another tube came along that is over the rim just then.
+/// Tubes that lie still sleep until they are touched. `full`: none of the pruning and shortening.
+/// sim_s and wall_s are sums over the samples' roll-outs.
 ///
 /// Settled scenes of the last pile are kept for the next question about it.
 /// The function may be called from several threads at once; results do not depend on the thread

@@ -87,9 +87,11 @@ bool NothingLeftToTouch(const RolloutScene& scene, int index, bool only_rises, c
   return true;
 }
 
-void Measure(const RolloutScene& scene, int index, const mjModel& model, mjData& data,
+// What the others have done so far.
+void Measure(const RolloutScene& scene, int index, const mjModel& model, const mjData& data,
              RolloutOutcome& outcome) {
-  GuardEngine([&] { mj_forward(&model, &data); });
+  outcome.displacement_m = 0.0;
+  outcome.extra = false;
   for (int i = 0; i < static_cast<int>(scene.tubes().size()); ++i) {
     if (i == index) continue;
     const Vector3 centre = scene.tubes()[i].CentreOfMass_W(model, data);
@@ -196,9 +198,14 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
     if (outcome.status == Status::kJammed) break;
     if (step % kLookEvery != 0) continue;
     if (NothingLeftToTouch(scene, index, step * dt >= rising_from_s, model, data)) break;
+    outcome.sim_s = step * dt;
+    Measure(scene, index, model, data, outcome);
+    if (outcome.displacement_m > config.give_up_m) break;
   }
   outcome.sim_s = step * dt;
-  if (outcome.status != Status::kDiverged) Measure(scene, index, model, data, outcome);
+  if (outcome.status == Status::kDiverged) return outcome;
+  GuardEngine([&] { mj_forward(&model, &data); });
+  Measure(scene, index, model, data, outcome);
   return outcome;
 }
 

@@ -78,12 +78,15 @@ TEST_CASE("A leg profile knows from when on it only rises") {
   CHECK(down.RisingFrom() == down.duration_s());
 }
 
+// Tube 2 lies balanced across tube 1.
+TubeScene Balanced() {
+  return PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
+                       StraightLine({0.20, -0.25, 3 * kRadius}, {0.20, 0.25, 3 * kRadius})},
+                      kRadius);
+}
+
 TEST_CASE("Lifting a covered tube takes the other along", "[physics]") {
-  // Tube 2 lies balanced across tube 1.
-  const TubeScene scene =
-      PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
-                    StraightLine({0.20, -0.25, 3 * kRadius}, {0.20, 0.25, 3 * kRadius})},
-                   kRadius);
+  const TubeScene scene = Balanced();
   REQUIRE(scene.tubes[0].tube_class == TubeClass::kWeak);
   const EvaluationResult result = Evaluate(scene, Request({Motion(1, "up", kUp)}, scene, 0.4));
   REQUIRE(result.candidates.size() == 1);
@@ -173,6 +176,22 @@ void CheckSame(const CandidateScore& a, const CandidateScore& b) {
   CHECK(a.cost == b.cost);
   CHECK(a.sim_s == b.sim_s);
   CHECK(a.samples == b.samples);
+}
+
+TEST_CASE("A roll-out is given up once it has displaced the others by too much", "[physics]") {
+  const TubeScene scene = Balanced();
+  EvaluatorOptions options;
+  options.config.give_up_m = 0.1;
+  const auto evaluate = MakeEvaluator(options);
+  EvaluationRequest request = Request({Motion(1, "up", kUp)}, scene, 0.4);
+  const CandidateScore cut = evaluate(scene, LoadPart("pvc_a"), Bin{}, request).candidates[0];
+  CHECK(cut.status == CandidateScore::Status::kDone);
+  CHECK(cut.displacement_m > 0.1);
+  CHECK(cut.displacement_m < 0.15);  // Looked at every 40 ms.
+  request.full = true;
+  const CandidateScore full = evaluate(scene, LoadPart("pvc_a"), Bin{}, request).candidates[0];
+  CHECK(full.displacement_m > cut.displacement_m);
+  CHECK(full.sim_s > 1.5 * cut.sim_s);
 }
 
 TEST_CASE("Scores depend neither on threads nor on order nor on what ran before", "[physics]") {

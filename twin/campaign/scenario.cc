@@ -179,6 +179,7 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
     planner.weight_release = 0.0;
     planner.min_length_share = planner.min_confidence = 0.0;
     planner.nudges = 0;
+    scenario.evaluator.give_up_m = planner.max_displacement_m;  // Where the paper's cost ends.
     scenario.resolution.strategy = "plus45";
   }
   source.ReadInto(scenario);
