@@ -43,7 +43,7 @@ struct PlannerConfig {
   /// alone. 0: none, as in the paper.
   int separated = 1;
   /// After so many roll-outs the best motion of those asked about is taken: time for a decision.
-  int max_rollouts = 40;
+  int max_rollouts = 30;
   int samples = 5;          ///< Roll-outs of the best candidates; 1 is the paper's cost.
   int refined = 4;          ///< So many of the best candidates get all samples.
   int max_candidates = 12;  ///< Motions that are simulated before it is known whether one will do.
