@@ -37,9 +37,10 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
           "more covered tubes are evaluated while the best motion brings another tube along with a "
           "larger probability",
           accept_extra, {0.0, 1.0});
-  v.Field("max_rollouts",
-          "after so many roll-outs the best of the motions that were asked about is taken",
-          max_rollouts, {1, 1e6});
+  v.Field(
+      "max_rollouts",
+      "no more motions are asked about after so many roll-outs: the best of the others is taken",
+      max_rollouts, {1, 1e6});
   v.Field("separated",
           "so many covered tubes get the long list of motions (tilts, shakes, hemisphere, helices) "
           "where "

@@ -42,7 +42,7 @@ struct PlannerConfig {
   /// So many tubes get the long list of motions where none of the short one promises to take a tube
   /// alone. 0: none, as in the paper.
   int separated = 1;
-  /// After so many roll-outs the best motion of those asked about is taken: time for a decision.
+  /// No more motions are asked about after so many roll-outs; the list under way is ended first.
   int max_rollouts = 30;
   int samples = 5;          ///< Roll-outs of the best candidates; 1 is the paper's cost.
   int refined = 4;          ///< So many of the best candidates get all samples.

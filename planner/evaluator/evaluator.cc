@@ -55,20 +55,12 @@ void ValidateTurns(const CandidateMotion& candidate, const std::string& who) {
   }
 }
 
-double WayOf(const CandidateMotion& motion) {
-  double way_m = 0.0;
-  for (std::size_t i = 1; i < motion.waypoints_N.size(); ++i) {
-    way_m += (motion.waypoints_N[i] - motion.waypoints_N[i - 1]).norm();
-  }
-  return way_m;
-}
-
 double DurationOf(const CandidateMotion& motion) {
   double turn_rad = 0.0;
   for (std::size_t i = 1; i < motion.rotations_N.size(); ++i) {
     turn_rad += motion.rotations_N[i - 1].angularDistance(motion.rotations_N[i]);
   }
-  return WayOf(motion) / motion.speed_m_s + turn_rad / motion.turn_speed_rad_s;
+  return Length(motion.waypoints_N) / motion.speed_m_s + turn_rad / motion.turn_speed_rad_s;
 }
 
 void Validate(const TubeScene& scene, const EvaluationRequest& request,
@@ -89,9 +81,10 @@ void Validate(const TubeScene& scene, const EvaluationRequest& request,
     ValidateTurns(candidate, who);
     if (candidate.waypoints_N.empty() || !(candidate.speed_m_s > 0.0) ||
         !(DurationOf(candidate) <= config.max_sim_s)) {
-      throw Error(ErrorKind::kBadData, who + "a way of " + Number(WayOf(candidate)) + " m at " +
-                                           Number(candidate.speed_m_s) + " m/s, at most " +
-                                           Number(config.max_sim_s) + " s are simulated");
+      throw Error(ErrorKind::kBadData, who + "a way of " + Number(Length(candidate.waypoints_N)) +
+                                           " m at " + Number(candidate.speed_m_s) +
+                                           " m/s, at most " + Number(config.max_sim_s) +
+                                           " s are simulated");
     }
   }
 }

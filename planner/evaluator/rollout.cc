@@ -87,19 +87,24 @@ bool NothingLeftToTouch(const RolloutScene& scene, int index, bool only_rises, c
   return true;
 }
 
-// What the others have done so far.
-void Measure(const RolloutScene& scene, int index, const mjModel& model, const mjData& data,
-             RolloutOutcome& outcome) {
-  outcome.displacement_m = 0.0;
-  outcome.extra = false;
+struct Disturbance {
+  double displacement_m = 0.0;
+  bool extra = false;
+};
+
+// What the others have done in the first `sim_s` seconds.
+Disturbance Measure(const RolloutScene& scene, int index, double sim_s, const mjModel& model,
+                    const mjData& data) {
+  Disturbance out;
   for (int i = 0; i < static_cast<int>(scene.tubes().size()); ++i) {
     if (i == index) continue;
     const Vector3 centre = scene.tubes()[i].CentreOfMass_W(model, data);
     const Vector3& before = scene.centres_N()[i];
-    const double creep_m = scene.creep_m_s()[i] * outcome.sim_s;
-    outcome.displacement_m += std::max(0.0, (centre - before).norm() - creep_m);
-    if (centre.z() > std::max(scene.wall_m(), before.z() + kRaised_m)) outcome.extra = true;
+    const double creep_m = scene.creep_m_s()[i] * sim_s;
+    out.displacement_m += std::max(0.0, (centre - before).norm() - creep_m);
+    if (centre.z() > std::max(scene.wall_m(), before.z() + kRaised_m)) out.extra = true;
   }
+  return out;
 }
 
 }  // namespace
@@ -198,14 +203,14 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
     if (outcome.status == Status::kJammed) break;
     if (step % kLookEvery != 0) continue;
     if (NothingLeftToTouch(scene, index, step * dt >= rising_from_s, model, data)) break;
-    outcome.sim_s = step * dt;
-    Measure(scene, index, model, data, outcome);
-    if (outcome.displacement_m > config.give_up_m) break;
+    if (Measure(scene, index, step * dt, model, data).displacement_m > config.give_up_m) break;
   }
   outcome.sim_s = step * dt;
   if (outcome.status == Status::kDiverged) return outcome;
   GuardEngine([&] { mj_forward(&model, &data); });
-  Measure(scene, index, model, data, outcome);
+  const Disturbance others = Measure(scene, index, outcome.sim_s, model, data);
+  outcome.displacement_m = others.displacement_m;
+  outcome.extra = others.extra;
   return outcome;
 }
 
