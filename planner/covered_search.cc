@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "hw_bridge/base/error.h"
+#include "hw_bridge/base/text.h"
 #include "planner/more_motions.h"
+#include "planner/sweep.h"
 #include "planner/tilt_motions.h"
 
 namespace tubetwin {
@@ -16,6 +19,10 @@ namespace {
 constexpr double kExtraPerMetre = 2.2, kQuiet_m = 0.05, kLeastExtra = 0.02, kMostExtra = 0.9;
 constexpr double kPriorSamples = 5.0;
 constexpr int kSamplesAtOnce = 2;  // A motion that is bad in one of them need not be tried further.
+// So many motions are rolled out before their scores limit the next ones, and so much of the
+// simulated time is kept from first roll-outs for the samples of the best.
+constexpr std::size_t kAtOnce = 6;
+constexpr double kKeptForSamples = 0.3;
 
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -31,6 +38,7 @@ CandidateScore Merged(CandidateScore score, const CandidateScore& more) {
   score.cost =
       std::max(mean(score.cost, more.cost), score.displacement_m + score.extra_probability);
   if (more.status != CandidateScore::Status::kDone) score.status = more.status;
+  score.lower_bound = score.lower_bound || more.lower_bound;
   score.sim_s += more.sim_s;
   score.wall_s += more.wall_s;
   score.samples.insert(score.samples.end(), more.samples.begin(), more.samples.end());
@@ -70,7 +78,7 @@ bool CoveredSearch::Next() {
   do {
     ScoreMore();
     Refine();
-  } while (!Exhausted() && !AnyPromising() && rollouts_ < input_.config.max_rollouts);
+  } while (!Exhausted() && !AnyPromising() && simulated_s_ < input_.config.max_simulated_s);
   return true;
 }
 
@@ -85,16 +93,15 @@ void CoveredSearch::Finish() {
 }
 
 void CoveredSearch::ScoreMore() {
-  const std::size_t first = scored_.size();
   if (next_ == targets_.size()) {
     AddSeparations();
     separated_ = true;
   }
   while (next_ < targets_.size() &&
-         static_cast<int>(scored_.size() - first) < input_.config.max_candidates) {
+         static_cast<int>(waiting_.size()) < input_.config.max_candidates) {
     AddMotions(targets_[next_++]);
   }
-  ScreenFrom(first);
+  ScreenWaiting();
 }
 
 void CoveredSearch::AddSeparations() {
@@ -132,21 +139,49 @@ void CoveredSearch::AddMotions(const Target& target, MotionSet set) {
       continue;
     }
     const Grasp& best = grasps.grasps.front();
-    scored_.push_back({&target, std::move(motion), best.at_m, best.cost, {}, 0});
+    const int touches = CountTouched(input_.scene, motion);
+    waiting_.push_back({&target, std::move(motion), best.at_m, best.cost, touches, {}, 0});
   }
 }
 
-void CoveredSearch::ScreenFrom(std::size_t first) {
-  std::vector<Scored*> all;
-  for (std::size_t k = first; k < scored_.size(); ++k) all.push_back(&scored_[k]);
-  AddSamples(all, 1);
+void CoveredSearch::ScreenWaiting() {
+  const PlannerConfig& config = input_.config;
+  std::stable_sort(waiting_.begin(), waiting_.end(), [&](const Scored& a, const Scored& b) {
+    const bool doubtful_a = !a.target->doubt.empty(), doubtful_b = !b.target->doubt.empty();
+    return doubtful_a != doubtful_b ? doubtful_b : a.touches < b.touches;
+  });
+  std::size_t next = 0;
+  while (next < waiting_.size() &&
+         (scored_.empty() || simulated_s_ < (1.0 - kKeptForSamples) * config.max_simulated_s)) {
+    const std::vector<Scored*> order = InOrder();
+    const std::size_t first = scored_.size(), end = std::min(next + kAtOnce, waiting_.size());
+    std::vector<double> give_up_m;
+    for (std::size_t k = next; k < end; ++k) {
+      // With one sample there is no second question that could set a wrong one right.
+      const bool limited =
+          config.samples > 1 && order.size() >= static_cast<std::size_t>(config.refined);
+      give_up_m.push_back(limited ? WorthUpTo(waiting_[k], *order[config.refined - 1])
+                                  : std::numeric_limits<double>::infinity());
+    }
+    for (; next < end; ++next) scored_.push_back(std::move(waiting_[next]));
+    std::vector<Scored*> asked;
+    for (std::size_t k = first; k < scored_.size(); ++k) asked.push_back(&scored_[k]);
+    AddSamples(asked, 1, give_up_m);
+  }
+  for (; next < waiting_.size(); ++next) {
+    const CandidateMotion& motion = waiting_[next].motion;
+    result_.rejections.push_back({motion.tube, motion.name, "",
+                                  "not rolled out: planner.max_simulated_s, " +
+                                      Number(config.max_simulated_s) + " s, is spent"});
+  }
+  waiting_.clear();
 }
 
 void CoveredSearch::Refine() {
   for (;;) {
     std::vector<Scored*> order = InOrder();
     if (order.empty() || IsRefined(*order.front())) return;
-    if (rollouts_ >= input_.config.max_rollouts) return;
+    if (simulated_s_ >= input_.config.max_simulated_s) return;
     order.resize(std::min<std::size_t>(order.size(), input_.config.refined));
     std::erase_if(order, [this](const Scored* scored) { return IsRefined(*scored); });
     // Those with as many samples as the best: one question for all.
@@ -164,7 +199,7 @@ std::vector<Scored*> CoveredSearch::InOrder() {
   };
   std::stable_sort(order.begin(), order.end(), [&](const Scored* a, const Scored* b) {
     const Rank rank_a = rank(a), rank_b = rank(b);
-    return rank_a != rank_b ? rank_a < rank_b : CostOf(*a) < CostOf(*b);
+    return rank_a != rank_b ? rank_a < rank_b : CostOf(*a, a->score) < CostOf(*b, b->score);
   });
   return order;
 }
@@ -174,12 +209,36 @@ bool CoveredSearch::IsRefined(const Scored& scored) const {
          scored.samples >= input_.config.samples;
 }
 
-double CoveredSearch::CostOf(const Scored& scored) const {
+double CoveredSearch::CostOf(const Scored& scored, const CandidateScore& score) const {
   const PlannerConfig& config = input_.config;
-  const double share = std::min(scored.score.displacement_m / config.max_displacement_m, 1.0);
+  const double share = std::min(score.displacement_m / config.max_displacement_m, 1.0);
   return scored.grasp_cost + config.weight_trajectory * share +
          config.weight_confidence * (1.0 - scored.target->tube->confidence) +
-         config.weight_extra * ExtraProbability(scored.score, input_.part);
+         config.weight_extra * ExtraProbability(score, input_.part);
+}
+
+// The displacement with which the first roll-out of a motion makes it dearer than a rival.
+double CoveredSearch::WorthUpTo(const Scored& scored, const Scored& rival) const {
+  constexpr int kHalvings = 20;
+  const auto rank = [](const Scored& of, const CandidateScore* score) {
+    return RankOf(IsFree(*of.target), !of.target->doubt.empty(), score);
+  };
+  const Rank own = rank(scored, nullptr), other = rank(rival, &rival.score);
+  if (own < other) return std::numeric_limits<double>::infinity();
+  if (other < own) return 0.0;
+  CandidateScore score;
+  score.samples.resize(1);
+  const auto worth = [&](double displacement_m) {
+    score.displacement_m = displacement_m;
+    return CostOf(scored, score) <= CostOf(rival, rival.score);
+  };
+  double low_m = 0.0, high_m = input_.config.max_displacement_m;
+  if (worth(high_m)) return std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle_m = 0.5 * (low_m + high_m);
+    (worth(middle_m) ? low_m : high_m) = middle_m;
+  }
+  return low_m;
 }
 
 bool CoveredSearch::AnyPromising() const {
@@ -191,13 +250,15 @@ bool CoveredSearch::AnyPromising() const {
   });
 }
 
-void CoveredSearch::AddSamples(const std::vector<Scored*>& motions, int samples) {
+void CoveredSearch::AddSamples(const std::vector<Scored*>& motions, int samples,
+                               const std::vector<double>& give_up_m) {
   if (motions.empty()) return;
   TT_CHECK(input_.evaluate);
   EvaluationRequest request;
   request.seed = input_.seed;
   request.first_sample = motions.front()->samples;
   request.samples = samples;
+  request.give_up_m = give_up_m;
   for (const Scored* scored : motions) {
     request.candidates.push_back(scored->motion);
     request.grasp_at_m.push_back(scored->grasp_at_m);
@@ -213,8 +274,11 @@ void CoveredSearch::AddSamples(const std::vector<Scored*>& motions, int samples)
     Scored& scored = *motions[k];
     scored.score =
         scored.samples == 0 ? answer.candidates[k] : Merged(scored.score, answer.candidates[k]);
-    scored.samples += samples;
-    if (scored.score.status != CandidateScore::Status::kPruned) rollouts_ += samples;
+    simulated_s_ += answer.candidates[k].sim_s;
+    // What was given up for others' sake starts anew should it come to the front.
+    const bool ours = !give_up_m.empty() && answer.candidates[k].lower_bound &&
+                      answer.candidates[k].displacement_m > give_up_m[k];
+    if (!ours) scored.samples += samples;
   }
 }
 

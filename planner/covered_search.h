@@ -26,8 +26,9 @@ struct Scored {
   const Target* target = nullptr;
   CandidateMotion motion;
   double grasp_at_m = 0.0, grasp_cost = 0.0;  ///< Where it would be held if all motions were good.
+  int touches = 0;                            ///< Other tubes, by its swept volume.
   CandidateScore score;
-  int samples = 0;  ///< That were asked for.
+  int samples = 0;  ///< That were asked for and not given up.
 };
 
 /// Probability that another tube comes along: the samples' share drawn towards what the predicted
@@ -47,15 +48,16 @@ struct SearchInput {
 
 /// Scores motions of covered tubes in the order of `targets`, in batches of about `max_candidates`:
 /// "up", escapes and ways out of every tube, then the long list of separations for the `separated`
-/// best. Each motion is rolled out once, then the best `refined` with all samples, until the best
-/// of all has them: one lucky roll-out wins too easily among many. Candidates, rejections and times
-/// go into the result.
+/// best. Each motion is rolled out once, those that touch the fewest tubes first, as far as it may
+/// still be among the best `refined`; then these with all samples, until the best of all has them:
+/// one lucky roll-out wins too easily among many. Candidates, rejections and times go into the
+/// result.
 class CoveredSearch {
  public:
   CoveredSearch(const SearchInput& input, const std::vector<Target>& targets, PlanResult& result);
 
   /// Goes on until a motion promises to take its tube alone (`accept_extra`), nothing is left to
-  /// score or `max_rollouts` were made; false when nothing was left before.
+  /// score or `max_simulated_s` were spent; false when nothing was left before.
   bool Next();
   const std::vector<Scored>& scored() const { return scored_; }
   /// Moves the scores into the result.
@@ -67,20 +69,23 @@ class CoveredSearch {
   void AddSeparations();
   void AddMotions(const Target& target);
   void AddMotions(const Target& target, MotionSet set);
-  void ScreenFrom(std::size_t first);
+  void ScreenWaiting();
   void Refine();
   std::vector<Scored*> InOrder();
   bool IsRefined(const Scored& scored) const;
-  double CostOf(const Scored& scored) const;
+  double CostOf(const Scored& scored, const CandidateScore& score) const;
+  double WorthUpTo(const Scored& scored, const Scored& rival) const;
   bool AnyPromising() const;
-  void AddSamples(const std::vector<Scored*>& motions, int samples);
+  void AddSamples(const std::vector<Scored*>& motions, int samples,
+                  const std::vector<double>& give_up_m = {});
 
   const SearchInput input_;
   const std::vector<Target>& targets_;
   PlanResult& result_;
   std::size_t next_ = 0;
   bool separated_ = false;
-  int rollouts_ = 0;
+  double simulated_s_ = 0.0;
+  std::vector<Scored> waiting_;  ///< To be rolled out for the first time.
   std::vector<Scored> scored_;
 };
 

@@ -103,6 +103,7 @@ Json ToJson(const EvaluationResult& result) {
                                   {"extra_probability", score.extra_probability},
                                   {"cost", score.cost},
                                   {"status", ToString(score.status)},
+                                  {"lower_bound", score.lower_bound},
                                   {"sim_s", score.sim_s},
                                   {"wall_s", score.wall_s},
                                   {"samples", score.samples}});

@@ -56,6 +56,7 @@ struct CandidateScore : MotionWay {
   double extra_probability = 0.0;  ///< Share of samples in which another tube came along.
   double cost = 0.0;               ///< Lower is better.
   enum class Status { kDone, kJammed, kDiverged, kPruned } status = Status::kDone;
+  bool lower_bound = false;  ///< A roll-out was given up: the whole displacement would be larger.
   double sim_s = 0.0, wall_s = 0.0;
   std::vector<double> samples;  ///< Displacement of each sample.
 };
@@ -65,6 +66,9 @@ struct EvaluationRequest {
   std::vector<CandidateMotion> candidates;
   /// Arc length on each candidate's tube where the hand holds it.
   std::vector<double> grasp_at_m;
+  /// For each candidate the displacement beyond which its roll-outs need not go on, because another
+  /// motion is better then. Empty: the evaluator's own limit for all.
+  std::vector<double> give_up_m;
   int samples = 1;
   int first_sample = 0;  ///< Samples first_sample to first_sample + samples - 1 are rolled out.
   bool full = false;     ///< Nothing pruned or cut short.

@@ -37,10 +37,10 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
           "more covered tubes are evaluated while the best motion brings another tube along with a "
           "larger probability",
           accept_extra, {0.0, 1.0});
-  v.Field(
-      "max_rollouts",
-      "no more motions are asked about after so many roll-outs: the best of the others is taken",
-      max_rollouts, {1, 1e6});
+  v.Field("max_simulated_s",
+          "no more motions are asked about after so much simulated time: the best of the others is "
+          "taken",
+          max_simulated_s, {1, 1e6});
   v.Field("separated",
           "so many covered tubes get the long list of motions (tilts, shakes, hemisphere, helices) "
           "where "

@@ -42,10 +42,11 @@ struct PlannerConfig {
   /// So many tubes get the long list of motions where none of the short one promises to take a tube
   /// alone. 0: none, as in the paper.
   int separated = 1;
-  /// No more motions are asked about after so many roll-outs; the list under way is ended first.
-  int max_rollouts = 30;
+  /// Roll-outs for one choice end after so much simulated time, part of which is kept for the
+  /// samples of the best motions.
+  double max_simulated_s = 30.0;
   int samples = 5;          ///< Roll-outs of the best candidates; 1 is the paper's cost.
-  int refined = 4;          ///< So many of the best candidates get all samples.
+  int refined = 2;          ///< So many of the best candidates get all samples.
   int max_candidates = 12;  ///< Motions that are simulated before it is known whether one will do.
   int max_plans = 8;        ///< Ranked plans that are checked for the arm and returned.
   int plans_per_tube = 3;

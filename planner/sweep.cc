@@ -96,17 +96,32 @@ const PerceivedTube& MovedTube(const TubeScene& scene, const CandidateMotion& mo
   return *found;
 }
 
-std::optional<int> FirstOther(const TubeScene& scene, const CandidateMotion& motion,
-                              const Polyline& moving, double radius_m, const Track& track,
-                              double margin_m) {
+// Ids of the others that it touches, at most `most` of them.
+std::vector<int> Touched(const TubeScene& scene, const CandidateMotion& motion,
+                         const Polyline& moving, double radius_m, const Track& track,
+                         double margin_m, std::size_t most) {
+  std::vector<int> touched;
   for (const PerceivedTube& other : scene.tubes) {
+    if (touched.size() == most) break;
     if (other.id == motion.tube) continue;
     if (Touches(moving, Simplify(other.centerline_N, kChord_m), radius_m + other.radius_m, track,
                 margin_m)) {
-      return other.id;
+      touched.push_back(other.id);
     }
   }
-  return std::nullopt;
+  return touched;
+}
+
+std::vector<int> TouchedByTube(const TubeScene& scene, const CandidateMotion& motion,
+                               double margin_m, std::size_t most) {
+  TT_CHECK(!motion.waypoints_N.empty());
+  const PerceivedTube& tube = MovedTube(scene, motion);
+  const Polyline moving = Simplify(tube.centerline_N, kChord_m);
+  return Touched(scene, motion, moving, tube.radius_m, TrackOf(motion, moving), margin_m, most);
+}
+
+std::optional<int> First(const std::vector<int>& ids) {
+  return ids.empty() ? std::nullopt : std::optional<int>(ids.front());
 }
 
 }  // namespace
@@ -125,10 +140,11 @@ Polyline Simplify(const Polyline& line, double tolerance_m) {
 
 std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& motion,
                                 double margin_m) {
-  TT_CHECK(!motion.waypoints_N.empty());
-  const PerceivedTube& tube = MovedTube(scene, motion);
-  const Polyline moving = Simplify(tube.centerline_N, kChord_m);
-  return FirstOther(scene, motion, moving, tube.radius_m, TrackOf(motion, moving), margin_m);
+  return First(TouchedByTube(scene, motion, margin_m, 1));
+}
+
+int CountTouched(const TubeScene& scene, const CandidateMotion& motion, double margin_m) {
+  return static_cast<int>(TouchedByTube(scene, motion, margin_m, scene.tubes.size()).size());
 }
 
 std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const CandidateMotion& motion,
@@ -140,7 +156,7 @@ std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const Candidate
   const Polyline fingers = {p_N, p_N + Vector3(0, 0, kFingers_m)};
   const Track track = TrackOf(motion, fingers);
   if (track.rising_from == 0) return std::nullopt;
-  return FirstOther(scene, motion, fingers, radius_m, track, margin_m);
+  return First(Touched(scene, motion, fingers, radius_m, track, margin_m, 1));
 }
 
 }  // namespace tubetwin

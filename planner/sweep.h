@@ -20,6 +20,9 @@ Polyline Simplify(const Polyline& line, double tolerance_m);
 std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& motion,
                                 double margin_m = 0.003);
 
+/// How many tubes it touches.
+int CountTouched(const TubeScene& scene, const CandidateMotion& motion, double margin_m = 0.003);
+
 /// The same for the closed fingers that hold the tube at p_N, as an upright cylinder around them. A
 /// motion that only rises takes them out as they came in: nothing.
 std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const CandidateMotion& motion,

@@ -300,14 +300,14 @@ Vector3 TubeBody::CentreOfMass_W(const mjModel& model, const mjData& data) const
   return sum / mass_kg;
 }
 
-double TubeBody::MaxSpeed(const mjModel& model, const mjData& data) const {
+double TubeBody::MaxSpeed(const mjModel& model, const mjData& data, const Vector3& v_W) const {
   TT_CHECK(!bodies_.empty());
   double fastest = 0.0;
   for (const Attachment& node : nodes_) {
     mjtNum velocity[6];  // Rotation, then translation of the body's frame origin, world axes.
     mj_objectVelocity(&model, &data, mjOBJ_XBODY, bodies_[node.link], velocity, 0);
     const Vector3 arm = BodyPose(data, bodies_[node.link]).linear() * node.p_Body;
-    const Vector3 speed = Vector3(velocity + 3) + Vector3(velocity).cross(arm);
+    const Vector3 speed = Vector3(velocity + 3) + Vector3(velocity).cross(arm) - v_W;
     // A number that is not one must not pass for rest.
     if (!(speed.norm() <= fastest)) fastest = speed.norm();
     if (!std::isfinite(fastest)) return std::numeric_limits<double>::infinity();

@@ -57,8 +57,10 @@ class TubeBody {
   Polyline Centerline_W(const mjData& data) const;
   Polyline Centerline_N(const mjData& data) const;
   Vector3 CentreOfMass_W(const mjModel& model, const mjData& data) const;
-  /// Largest speed of any node, m/s; from the velocities last computed.
-  double MaxSpeed(const mjModel& model, const mjData& data) const;
+  /// Largest speed of any node beside something that moves at `v_W`, m/s; from the velocities last
+  /// computed.
+  double MaxSpeed(const mjModel& model, const mjData& data,
+                  const Vector3& v_W = Vector3::Zero()) const;
 
   /// The tube as it lies now: `tube` as given, with a new centerline.
   PileTube Current(const mjData& data) const;

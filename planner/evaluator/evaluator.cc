@@ -66,6 +66,7 @@ double DurationOf(const CandidateMotion& motion) {
 void Validate(const TubeScene& scene, const EvaluationRequest& request,
               const EvaluatorConfig& config) {
   TT_CHECK(request.grasp_at_m.size() == request.candidates.size());
+  TT_CHECK(request.give_up_m.empty() || request.give_up_m.size() == request.candidates.size());
   TT_CHECK(request.samples >= 1 && request.first_sample >= 0);
   for (std::size_t k = 0; k < request.candidates.size(); ++k) {
     const CandidateMotion& candidate = request.candidates[k];
@@ -161,6 +162,7 @@ CandidateScore Summarize(const CandidateMotion& candidate,
     score.samples.push_back(outcome.displacement_m);
     score.displacement_m += outcome.displacement_m / n;
     if (outcome.extra) score.extra_probability += 1.0 / n;
+    if (outcome.given_up) score.lower_bound = true;
     score.sim_s += outcome.sim_s;
     score.wall_s += wall_s[k];
     if (outcome.status == Status::kJammed) ++jammed;
@@ -285,8 +287,12 @@ class Evaluation {
       const CandidateMotion& motion = request_.candidates[candidate];
       const int tube = IndexOf(scene_, motion.tube);
       const double share = request_.grasp_at_m[candidate] / Length(scene_.tubes[tube].centerline_N);
-      outcomes[task] = RollOut(scene, tube, share, motion, request_.full, options_.config,
-                               *worker.model, *worker.data);
+      EvaluatorConfig config = options_.config;
+      if (!request_.give_up_m.empty()) {
+        config.give_up_m = std::min(config.give_up_m, request_.give_up_m[candidate]);
+      }
+      outcomes[task] =
+          RollOut(scene, tube, share, motion, request_.full, config, *worker.model, *worker.data);
       wall_s[task] = WallSeconds() - start_s;
     });
     for (std::size_t k = 0; k < to_run.size(); ++k) {
@@ -313,6 +319,8 @@ class Evaluation {
 
 void EvaluatorConfig::Visit(ConfigVisitor& v) {
   v.Field("timestep_s", "step of the roll-outs", timestep_s, {0.0005, 0.005});
+  v.Field("tolerance", "improvement at which the contact solver ends (MuJoCo's option)", tolerance,
+          {1e-12, 0.01});
   v.Field("hand_force_N", "force limit of the hand on each axis", hand_force_N, {1.0, 1000.0});
   v.Field("jam_s", "a hand that is saturated for longer is jammed", jam_s, {0.0, 10.0});
   v.Field("hold_s", "waiting after the motion, before displacements are taken", hold_s,

@@ -16,6 +16,8 @@ constexpr double kRamp_s = 0.15;
 constexpr double kSaturated = 0.99;       // Of the hand's force limit.
 constexpr double kRaised_m = 0.03;        // A tube that was over the rim before did not come along.
 constexpr double kOthersRest_m_s = 0.02;  // What they still do then is below 1 mm.
+constexpr double kRides_m_s = 0.01;       // A tube that slips less on what lifts it is carried,
+constexpr int kRidingLooks = 3;           // when it is seen so often in a row.
 constexpr int kLookEvery = 10;            // Steps between looks for an early end.
 constexpr double kBeads_m = 0.01;         // Between points of an axis that are compared.
 constexpr double kLevel_m = 0.005;        // A tube that is lower by this is passed already.
@@ -65,40 +67,77 @@ bool IsOver(const std::vector<Vector3>& other, const std::vector<Vector3>& risin
   return false;
 }
 
-// All others are at rest and the lifted tube is a radius over them, or, where it only rises from
-// here on, none of them is within a radius of its way.
-bool NothingLeftToTouch(const RolloutScene& scene, int index, bool only_rises, const mjModel& model,
-                        const mjData& data) {
-  const int count = static_cast<int>(scene.tubes().size());
-  for (int i = 0; i < count; ++i) {
-    if (i == index) continue;
-    if (!(scene.tubes()[i].MaxSpeed(model, data) < kOthersRest_m_s)) return false;
+// The lifted tube and those that it carries straight up, as far as it is sure that they stay on it.
+class Lifted {
+ public:
+  Lifted(const RolloutScene& scene, int index)
+      : scene_(scene), index_(index), looks_(scene.tubes().size(), 0) {}
+
+  bool Carries(int i) const { return looks_[i] >= kRidingLooks; }
+
+  /// One more look at the other tubes, while the hand moves at `v_N`.
+  void Look(const Vector3& v_N, bool only_rises, const mjModel& model, const mjData& data) {
+    for (int i = 0; i < Count(); ++i) {
+      const bool rides = i != index_ && only_rises && v_N.z() > kOthersRest_m_s &&
+                         scene_.tubes()[i].MaxSpeed(model, data, v_N) < kRides_m_s;
+      looks_[i] = rides ? looks_[i] + 1 : 0;
+    }
   }
-  const double low = Heights(model, data, scene.tubes()[index]).low;
-  std::vector<Vector3> rising;
-  for (int i = 0; i < count; ++i) {
-    if (i == index) continue;
-    if (Heights(model, data, scene.tubes()[i]).high + scene.radius_m(i) <= low) continue;
-    if (!only_rises) return false;
-    if (rising.empty()) rising = Beads(model, data, scene.tubes()[index]);
-    const double reach_m = scene.radius_m(index) + 2.0 * scene.radius_m(i);
-    if (IsOver(Beads(model, data, scene.tubes()[i]), rising, reach_m)) return false;
+
+  /// All others are carried or at rest, and the load is a radius over those at rest or, where it
+  /// only rises from here on, none of them is within a radius of its way.
+  bool TouchesNothingMore(bool only_rises, const mjModel& model, const mjData& data) const {
+    std::vector<Vector3> beads;
+    double low = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < Count(); ++i) {
+      if (i == index_ || Carries(i)) {
+        low = std::min(low, Heights(model, data, scene_.tubes()[i]).low);
+      } else if (!(scene_.tubes()[i].MaxSpeed(model, data) < kOthersRest_m_s)) {
+        return false;
+      }
+    }
+    for (int i = 0; i < Count(); ++i) {
+      if (i == index_ || Carries(i)) continue;
+      if (Heights(model, data, scene_.tubes()[i]).high + scene_.radius_m(i) <= low) continue;
+      if (!only_rises) return false;
+      if (beads.empty()) beads = BeadsOfAll(model, data);
+      const double reach_m = scene_.radius_m(index_) + 2.0 * scene_.radius_m(i);
+      if (IsOver(Beads(model, data, scene_.tubes()[i]), beads, reach_m)) return false;
+    }
+    return true;
   }
-  return true;
-}
+
+ private:
+  int Count() const { return static_cast<int>(looks_.size()); }
+
+  std::vector<Vector3> BeadsOfAll(const mjModel& model, const mjData& data) const {
+    std::vector<Vector3> all;
+    for (int i = 0; i < Count(); ++i) {
+      if (i != index_ && !Carries(i)) continue;
+      const std::vector<Vector3> beads = Beads(model, data, scene_.tubes()[i]);
+      all.insert(all.end(), beads.begin(), beads.end());
+    }
+    return all;
+  }
+
+  const RolloutScene& scene_;
+  const int index_;
+  std::vector<int> looks_;  // In a row, in which it was carried.
+};
 
 struct Disturbance {
   double displacement_m = 0.0;
   bool extra = false;
 };
 
-// What the others have done in the first `sim_s` seconds.
+// What the others have done in the first `sim_s` seconds, those that are carried `rise_m` higher.
 Disturbance Measure(const RolloutScene& scene, int index, double sim_s, const mjModel& model,
-                    const mjData& data) {
+                    const mjData& data, const Lifted* lifted = nullptr, double rise_m = 0.0) {
   Disturbance out;
   for (int i = 0; i < static_cast<int>(scene.tubes().size()); ++i) {
     if (i == index) continue;
-    const Vector3 centre = scene.tubes()[i].CentreOfMass_W(model, data);
+    Vector3 centre = scene.tubes()[i].CentreOfMass_W(model, data);
+    if (lifted != nullptr && lifted->Carries(i)) centre.z() += rise_m;
     const Vector3& before = scene.centres_N()[i];
     const double creep_m = scene.creep_m_s()[i] * sim_s;
     out.displacement_m += std::max(0.0, (centre - before).norm() - creep_m);
@@ -180,15 +219,16 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
   }
   GuardEngine([&] { mj_copyModel(&model, &scene.model()); });
   const RigidTransform X_NStart = scene.Grip(index, grip_share, model, data);
-  std::vector<Vector3> p_NHand;
+  std::vector<Vector3> way_NHand;
   for (std::size_t k = 0; k < motion.waypoints_N.size(); ++k) {
-    p_NHand.push_back(PoseAt(motion, k) * X_NStart.translation());
+    way_NHand.push_back(PoseAt(motion, k) * X_NStart.translation());
   }
-  const LegProfile profile(std::move(p_NHand), motion.speed_m_s, motion.rotations_N,
+  const LegProfile profile(std::move(way_NHand), motion.speed_m_s, motion.rotations_N,
                            motion.turn_speed_rad_s);
   const double dt = model.opt.timestep, rising_from_s = profile.RisingFrom();
   const int steps = static_cast<int>(std::ceil((profile.duration_s() + config.hold_s) / dt));
-  double saturated_s = 0.0;
+  double saturated_s = 0.0, rise_m = 0.0;
+  Lifted lifted(scene, index);
   int step = 0;
   while (step < steps) {
     ++step;
@@ -202,13 +242,22 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
     if (full) continue;
     if (outcome.status == Status::kJammed) break;
     if (step % kLookEvery != 0) continue;
-    if (NothingLeftToTouch(scene, index, step * dt >= rising_from_s, model, data)) break;
-    if (Measure(scene, index, step * dt, model, data).displacement_m > config.give_up_m) break;
+    const Vector3 p_NHand = profile.At(step * dt);
+    const bool only_rises = step * dt >= rising_from_s;
+    lifted.Look((p_NHand - profile.At((step - 1) * dt)) / dt, only_rises, model, data);
+    if (lifted.TouchesNothingMore(only_rises, model, data)) {
+      rise_m = profile.At(profile.duration_s()).z() - p_NHand.z();
+      break;
+    }
+    if (Measure(scene, index, step * dt, model, data).displacement_m > config.give_up_m) {
+      outcome.given_up = true;
+      break;
+    }
   }
   outcome.sim_s = step * dt;
   if (outcome.status == Status::kDiverged) return outcome;
   GuardEngine([&] { mj_forward(&model, &data); });
-  const Disturbance others = Measure(scene, index, outcome.sim_s, model, data);
+  const Disturbance others = Measure(scene, index, outcome.sim_s, model, data, &lifted, rise_m);
   outcome.displacement_m = others.displacement_m;
   outcome.extra = others.extra;
   return outcome;

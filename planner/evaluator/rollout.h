@@ -36,7 +36,8 @@ class LegProfile {
 struct RolloutOutcome {
   CandidateScore::Status status = CandidateScore::Status::kDone;
   double displacement_m = 0.0;
-  bool extra = false;  ///< Another tube is over the rim.
+  bool extra = false;     ///< Another tube is over the rim.
+  bool given_up = false;  ///< Ended because of its displacement, which would have grown.
   double sim_s = 0.0;
 };
 

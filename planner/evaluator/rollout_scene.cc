@@ -126,6 +126,8 @@ RolloutScene::RolloutScene(const std::vector<PileTube>& tubes, const Part& part,
   for (TubeBody& tube : tubes_) tube.Bind(*model_);
   BindHand();
   Settle();
+  // Where things move, chance decides more than the solver's last digits do.
+  model_->opt.tolerance = config.tolerance;
   // Tubes that lie still apart from the lifted one are left out until something touches them.
   model_->opt.enableflags |= mjENBL_SLEEP;
   model_->opt.sleep_tolerance = kAsleep_m_s2 * config.timestep_s;

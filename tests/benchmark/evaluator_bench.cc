@@ -75,6 +75,7 @@ EvaluationRequest SixtyFour(const TubeScene& scene, const Bin& bin) {
 void PlainRollouts(const Pile& pile, const EvaluationRequest& request) {
   EvaluatorConfig config;
   config.timestep_s = 0.001;
+  config.tolerance = 1e-8;
   for (std::size_t k = 0; k < request.candidates.size(); ++k) {
     const RolloutScene scene(pile.tubes, pile.part, pile.bin, pile.part.friction,
                              pile.part.bending_stiffness_Nm2, config);

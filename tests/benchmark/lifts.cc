@@ -27,6 +27,7 @@
 #include "perception/perceive.h"
 #include "planner/arm_feasibility.h"
 #include "planner/choose.h"
+#include "planner/covered_search.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/evaluator/rollout.h"
 #include "planner/grasps.h"
@@ -140,6 +141,7 @@ class TrueWorld {
   static EvaluatorConfig Fine() {
     EvaluatorConfig config;
     config.timestep_s = 0.001;
+    config.tolerance = 1e-8;
     config.hold_s = 1.0;
     return config;
   }
@@ -242,10 +244,11 @@ class Trial {
     const EvaluationResult result = Evaluate()(scene_, part_, pile_.bin, request);
     for (std::size_t k = 0; k < tubes.size(); ++k) {
       const CandidateScore& score = result.candidates[k];
-      const Prediction predicted{score.displacement_m, score.extra_probability,
-                                 static_cast<int>(score.samples.size())};
-      rows.push_back(Row("lift", *tubes[k], request.candidates[k], request.grasp_at_m[k],
-                         ToJson(std::optional(predicted))));
+      Json predicted = ToJson(std::optional(Prediction{
+          score.displacement_m, score.extra_probability, static_cast<int>(score.samples.size())}));
+      predicted["probability"] = ExtraProbability(score, part_);  // What the choice goes by.
+      rows.push_back(
+          Row("lift", *tubes[k], request.candidates[k], request.grasp_at_m[k], predicted));
     }
     return rows;
   }

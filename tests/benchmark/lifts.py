@@ -62,6 +62,7 @@ def main(paths):
         print(f"- area under the ROC curve: probability {with_interval(lifts, probability)}, "
               f"displacement {with_interval(lifts, lambda r: r['predicted']['displacement_m'])}, "
               f"both {with_interval(lifts, lambda r: probability(r) + 1e-3 * r['predicted']['displacement_m'])}, "
+              f"what the choice goes by {with_interval(lifts, lambda r: r['predicted']['probability'])}, "
               f"another draw of the true lift {with_interval(lifts, lambda r: r['b']['extra'])}, "
               f"and its displacement {with_interval(lifts, lambda r: r['b']['extra'] + 1e-3 * r['b']['displacement_m'])}")
         made = [r for r in choices if r["motion"] and not r["mistaken"]]

@@ -6,14 +6,14 @@
 //
 // Piles of the seeds from SEED on, seen as they are, until N have no free tube (--exclude-free:
 // until N have a covered one; the free ones may not be chosen). Each is planned as the program
-// does, the arm included. A reference is the evaluator at 1 ms with five drawn samples, nothing
-// pruned or cut short; it compares M of the motions that the choice asked about and the arm can
-// carry out: the chosen one, the best by our own score, and others spread evenly over the rest of
-// that order. Regret is the reference's cost of our choice less its best. Two references of other
-// seeds share no sample; what each loses by the other's best is their agreement. Costs are not
-// negative, so a motion is given up as soon as its samples alone make it dearer than the best so
-// far: the best is the same. One row per pile, without --rows on standard output; seeds that ROWS
-// holds are skipped.
+// does, the arm included. A reference is the evaluator at 1 ms with five drawn samples, which end
+// only where nothing more can happen; it compares M of the motions that the choice asked about and
+// the arm can carry out: the chosen one, the best by our own score, and others spread evenly over
+// the rest of that order. Regret is the reference's cost of our choice less its best. Two
+// references of other seeds share no sample; what each loses by the other's best is their
+// agreement. Costs are not negative, so a motion is given up as soon as its samples alone make it
+// dearer than the best so far: the best is the same. One row per pile, without --rows on standard
+// output; seeds that ROWS holds are skipped.
 
 #include <algorithm>
 #include <cstdio>
@@ -154,6 +154,8 @@ class Reference {
   static EvaluatorConfig Fine() {
     EvaluatorConfig config;
     config.timestep_s = 0.001;
+    config.tolerance = 1e-8;
+    config.give_up_m = 1000.0;
     return config;
   }
 
@@ -169,7 +171,6 @@ class Reference {
     request.candidates = {offers_[k].motion};
     request.grasp_at_m = {offers_[k].at_m};
     request.first_sample = 1 + sums_[k].samples;  // The nominal one is the same for all seeds.
-    request.full = true;
     request.seed = seed_;
     const CandidateScore score =
         evaluate_(scene_, pile_.part, pile_.bin, request).candidates.front();

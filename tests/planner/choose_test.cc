@@ -1,5 +1,7 @@
 #include "planner/choose.h"
 
+#include <cmath>
+
 #include "hw_bridge/base/json.h"
 #include "planner/points.h"
 #include "tests/support/catch.h"
@@ -15,16 +17,20 @@ std::optional<std::string> Always(const Grasp&, const CandidateMotion&) { return
 // Likes "escape-", sees "up" bring another tube along and "escape+" jam; keeps what it was asked.
 struct FakeEvaluator {
   int calls = 0;
+  double sim_s = 0.0;  // Of each roll-out.
   EvaluationRequest first, last;
+  std::vector<EvaluationRequest> requests;
   EvaluateFunction Function() {
     return [this](const TubeScene&, const Part&, const Bin&, const EvaluationRequest& r) {
       if (calls++ == 0) first = r;
       last = r;
+      requests.push_back(r);
       EvaluationResult result;
       for (const CandidateMotion& candidate : r.candidates) {
         CandidateScore score;
         score.tube = candidate.tube;
         score.motion = candidate.name;
+        score.sim_s = sim_s * r.samples;
         score.displacement_m = score.cost = candidate.name == "escape-" ? 0.01 : 0.9;
         score.extra_probability = candidate.name == "up" ? 1.0 : 0.0;
         if (candidate.name == "escape+") score.status = CandidateScore::Status::kJammed;
@@ -132,6 +138,41 @@ TEST_CASE("With free tubes excluded the simulator decides, and a jam comes last"
   CHECK(result.plans.back().motion.name == "escape+");
   CHECK_THAT(result.plans.back().note, Catch::Contains("jammed"));
   CHECK(AnyReason(result, 2, "free tubes are excluded"));
+}
+
+TEST_CASE("Motions are rolled out as far as they may still be among the best", "[unit]") {
+  // Three pairs as in Cross(), side by side: nine motions.
+  std::vector<Polyline> lines_N;
+  for (const double y : {-0.18, 0.0, 0.18}) {
+    lines_N.push_back(StraightLine({-0.15, y, kRadius}, {0.25, y, kRadius}));
+    lines_N.push_back(StraightLine({0.05, y - 0.08, 3 * kRadius}, {0.05, y + 0.08, 3 * kRadius}));
+  }
+  const TubeScene scene = PerfectScene(lines_N, kRadius);
+  PlannerConfig config;
+  config.exclude_free = true;
+  config.refined = 1;
+  FakeEvaluator evaluator;
+  Plan(scene, config, evaluator);
+  REQUIRE(evaluator.calls >= 2);
+  for (const double limit_m : evaluator.requests[0].give_up_m) CHECK(std::isinf(limit_m));
+  REQUIRE(evaluator.requests[1].first_sample == 0);  // More motions.
+  REQUIRE_FALSE(evaluator.requests[1].give_up_m.empty());
+  // The best so far displaces 1 cm; nothing else that differs between motions is worth 30 cm.
+  for (const double limit_m : evaluator.requests[1].give_up_m) {
+    CHECK(limit_m >= 0.0);
+    CHECK(limit_m < 0.3);
+  }
+
+  FakeEvaluator slow;
+  slow.sim_s = config.max_simulated_s / 6;
+  const PlanResult cut = Plan(scene, config, slow);
+  CHECK(slow.calls == 1);
+  CHECK_FALSE(cut.plans.empty());
+  int left = 0;
+  for (const Rejection& rejection : cut.rejections) {
+    left += rejection.reason == "not rolled out: planner.max_simulated_s, 30 s, is spent" ? 1 : 0;
+  }
+  CHECK(left > 0);
 }
 
 TEST_CASE("Little covered tubes are simulated first, the others only if need be", "[unit]") {

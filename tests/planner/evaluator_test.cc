@@ -183,15 +183,37 @@ TEST_CASE("A roll-out is given up once it has displaced the others by too much",
   EvaluatorOptions options;
   options.config.give_up_m = 0.1;
   const auto evaluate = MakeEvaluator(options);
-  EvaluationRequest request = Request({Motion(1, "up", kUp)}, scene, 0.4);
+  // As it goes aside in the end, riding along tells nothing before.
+  EvaluationRequest request =
+      Request({Motion(1, "out", {{0, 0, 0}, {0, 0, 0.4}, {0, 0.05, 0.4}})}, scene, 0.4);
   const CandidateScore cut = evaluate(scene, LoadPart("pvc_a"), Bin{}, request).candidates[0];
   CHECK(cut.status == CandidateScore::Status::kDone);
+  CHECK(cut.lower_bound);
   CHECK(cut.displacement_m > 0.1);
-  CHECK(cut.displacement_m < 0.15);  // Looked at every 40 ms.
+  CHECK(cut.displacement_m < 0.15);  // Looked at every 50 ms.
+  request.give_up_m = {0.05};        // The smaller of both limits holds.
+  const CandidateScore sooner = evaluate(scene, LoadPart("pvc_a"), Bin{}, request).candidates[0];
+  CHECK(sooner.displacement_m > 0.05);
+  CHECK(sooner.displacement_m < 0.1);
   request.full = true;
   const CandidateScore full = evaluate(scene, LoadPart("pvc_a"), Bin{}, request).candidates[0];
+  CHECK_FALSE(full.lower_bound);
   CHECK(full.displacement_m > cut.displacement_m);
   CHECK(full.sim_s > 1.5 * cut.sim_s);
+}
+
+TEST_CASE("A roll-out ends once another tube rides along for sure", "[physics]") {
+  const TubeScene scene = Balanced();
+  EvaluationRequest request = Request({Motion(1, "up", kUp)}, scene, 0.4);
+  const CandidateScore cut = Evaluate(scene, request).candidates[0];
+  CHECK(cut.sim_s < 0.7);  // Of 2.05 s.
+  CHECK_FALSE(cut.lower_bound);
+  CHECK(cut.extra_probability == 1.0);
+  request.full = true;
+  const CandidateScore full = Evaluate(scene, request).candidates[0];
+  CHECK(full.sim_s > 2.0);
+  CHECK(cut.displacement_m == Approx(full.displacement_m).margin(0.01));
+  CHECK(full.extra_probability == 1.0);
 }
 
 TEST_CASE("Scores depend neither on threads nor on order nor on what ran before", "[physics]") {

@@ -173,7 +173,7 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
     planner.escape_const_m = 0.03;
     planner.samples = 1;
     planner.separated = 0;
-    planner.max_rollouts = 1000000;
+    planner.max_simulated_s = 1e6;
     planner.max_candidates = 1000;  // All weakly occluded tubes are simulated before the choice.
     planner.weight_clearance = planner.weight_confidence = planner.weight_extra = 0.0;
     planner.weight_release = 0.0;
