@@ -21,11 +21,6 @@ double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-bool IsNearAny(const std::vector<double>& tried_m, double at_m) {
-  return std::any_of(tried_m.begin(), tried_m.end(),
-                     [&](double other_m) { return std::abs(other_m - at_m) < kApart_m - 1e-9; });
-}
-
 struct Option {
   Rank rank = Rank::kCertainFree;
   PickPlan plan;
@@ -96,12 +91,7 @@ class Chooser {
         continue;
       }
       if (tube.centerline_N.size() < 2 || Length(tube.centerline_N) <= 0.0) continue;
-      const double released = std::min(1.0, ReleasedBy(scene_, tube.id) / kManyReleased);
-      Target target{&tube,
-                    DoubtAbout(tube, part_, config_),
-                    config_.weight_confidence * (1.0 - tube.confidence) +
-                        config_.weight_release * (1.0 - released),
-                    {}};
+      Target target{&tube, DoubtAbout(tube, part_, config_), {}};
       target.sites = FindGraspSites(scene_, tube, points_N_, bin_, config_);
       Report(target.sites.rejections);
       if (target.sites.sites.empty()) {
@@ -155,11 +145,8 @@ class Chooser {
   void TryCovered(std::vector<Option>& options) {
     const std::vector<Option> free = options;
     const std::vector<Target> targets = CoveredTargets();
-    const std::function<bool(const Scored&)> runnable = [this](const Scored& scored) {
-      return Runnable(scored);
-    };
-    CoveredSearch search({scene_, part_, bin_, config_, evaluate_, runnable, seed_, top_m_},
-                         targets, result_);
+    CoveredSearch search({scene_, part_, bin_, config_, evaluate_, seed_, top_m_}, targets,
+                         result_);
     while (result_.plans.empty() && search.Next()) {
       options = free;
       for (const Scored& scored : search.scored()) {
@@ -169,21 +156,6 @@ class Chooser {
       TryAll(options, Rank::kCertainCovered);
     }
     search.Finish();
-  }
-
-  // Whether the arm can run a motion with one of the grasps that suit it.
-  bool Runnable(const Scored& scored) const {
-    std::vector<double> tried;
-    for (Grasp& grasp : RankGrasps(scored.target->sites, *scored.target->tube, scored.motion, 0.0,
-                                   top_m_, bin_, config_)
-                            .grasps) {
-      if (IsNearAny(tried, grasp.at_m)) continue;
-      tried.push_back(grasp.at_m);
-      if (!feasible_(grasp, scored.motion)) return true;
-      grasp.X_NG.linear() = grasp.X_NG.linear() * RotZ(kPi);
-      if (!feasible_(grasp, scored.motion)) return true;
-    }
-    return false;
   }
 
   // All grasps of a tube for a motion; `score` null: the simulator was not needed.
@@ -210,8 +182,10 @@ class Chooser {
         option.plan.prediction = Prediction{score->displacement_m, score->extra_probability,
                                             static_cast<int>(score->samples.size())};
       }
+      const double released = std::min(1.0, ReleasedBy(scene_, tube.id) / kManyReleased);
       option.plan.cost =
-          grasp.cost + target.cost +
+          grasp.cost + config_.weight_confidence * (1.0 - tube.confidence) +
+          config_.weight_release * (1.0 - released) +
           (score != nullptr ? config_.weight_extra * ExtraProbability(*score, part_) : 0.0);
       option.plan.note =
           option.rank == Rank::kJams ? "the motion jammed in the simulator" : target.doubt;
@@ -238,7 +212,9 @@ class Chooser {
     if (static_cast<int>(result_.plans.size()) >= config_.max_plans) return;
     if (kept_[id] >= config_.plans_per_tube) return;
     std::vector<double>& tried = tried_[{id, option.plan.motion.name}];
-    if (IsNearAny(tried, option.plan.grasp.at_m)) return;
+    for (const double at_m : tried) {
+      if (std::abs(at_m - option.plan.grasp.at_m) < kApart_m - 1e-9) return;
+    }
     tried.push_back(option.plan.grasp.at_m);
     PickPlan plan = option.plan;
     const std::optional<std::string> against = feasible_(plan.grasp, plan.motion);

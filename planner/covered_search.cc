@@ -140,7 +140,7 @@ void CoveredSearch::AddMotions(const Target& target, MotionSet set) {
     }
     const Grasp& best = grasps.grasps.front();
     const int touches = CountTouched(input_.scene, motion);
-    waiting_.push_back({&target, std::move(motion), best.at_m, best.cost, touches, {}, 0, {}});
+    waiting_.push_back({&target, std::move(motion), best.at_m, best.cost, touches, {}, 0});
   }
 }
 
@@ -153,14 +153,14 @@ void CoveredSearch::ScreenWaiting() {
   std::size_t next = 0;
   while (next < waiting_.size() &&
          (scored_.empty() || simulated_s_ < (1.0 - kKeptForSamples) * config.max_simulated_s)) {
-    const std::vector<Scored*> best = Best();
+    const std::vector<Scored*> order = InOrder();
     const std::size_t first = scored_.size(), end = std::min(next + kAtOnce, waiting_.size());
     std::vector<double> give_up_m;
     for (std::size_t k = next; k < end; ++k) {
       // With one sample there is no second question that could set a wrong one right.
       const bool limited =
-          config.samples > 1 && best.size() == static_cast<std::size_t>(config.refined);
-      give_up_m.push_back(limited ? WorthUpTo(waiting_[k], *best.back())
+          config.samples > 1 && order.size() >= static_cast<std::size_t>(config.refined);
+      give_up_m.push_back(limited ? WorthUpTo(waiting_[k], *order[config.refined - 1])
                                   : std::numeric_limits<double>::infinity());
     }
     for (; next < end; ++next) scored_.push_back(std::move(waiting_[next]));
@@ -179,30 +179,16 @@ void CoveredSearch::ScreenWaiting() {
 
 void CoveredSearch::Refine() {
   for (;;) {
-    std::vector<Scored*> best = Best();
-    if (best.empty() || IsRefined(*best.front())) return;
+    std::vector<Scored*> order = InOrder();
+    if (order.empty() || IsRefined(*order.front())) return;
     if (simulated_s_ >= input_.config.max_simulated_s) return;
-    std::erase_if(best, [this](const Scored* scored) { return IsRefined(*scored); });
+    order.resize(std::min<std::size_t>(order.size(), input_.config.refined));
+    std::erase_if(order, [this](const Scored* scored) { return IsRefined(*scored); });
     // Those with as many samples as the best: one question for all.
-    const int samples = best.front()->samples;
-    std::erase_if(best, [&](const Scored* scored) { return scored->samples != samples; });
-    AddSamples(best, std::min(kSamplesAtOnce, input_.config.samples - samples));
+    const int samples = order.front()->samples;
+    std::erase_if(order, [&](const Scored* scored) { return scored->samples != samples; });
+    AddSamples(order, std::min(kSamplesAtOnce, input_.config.samples - samples));
   }
-}
-
-bool CoveredSearch::Runs(Scored& scored) const {
-  if (!scored.runnable) scored.runnable = input_.runnable(scored);
-  return *scored.runnable;
-}
-
-// The first `refined` that the arm can run.
-std::vector<Scored*> CoveredSearch::Best() {
-  std::vector<Scored*> best;
-  for (Scored* scored : InOrder()) {
-    if (best.size() == static_cast<std::size_t>(input_.config.refined)) break;
-    if (Runs(*scored)) best.push_back(scored);
-  }
-  return best;
 }
 
 std::vector<Scored*> CoveredSearch::InOrder() {
@@ -226,7 +212,8 @@ bool CoveredSearch::IsRefined(const Scored& scored) const {
 double CoveredSearch::CostOf(const Scored& scored, const CandidateScore& score) const {
   const PlannerConfig& config = input_.config;
   const double share = std::min(score.displacement_m / config.max_displacement_m, 1.0);
-  return scored.grasp_cost + config.weight_trajectory * share + scored.target->cost +
+  return scored.grasp_cost + config.weight_trajectory * share +
+         config.weight_confidence * (1.0 - scored.target->tube->confidence) +
          config.weight_extra * ExtraProbability(score, input_.part);
 }
 
@@ -254,13 +241,12 @@ double CoveredSearch::WorthUpTo(const Scored& scored, const Scored& rival) const
   return low_m;
 }
 
-bool CoveredSearch::AnyPromising() {
-  return std::any_of(scored_.begin(), scored_.end(), [this](Scored& scored) {
+bool CoveredSearch::AnyPromising() const {
+  return std::any_of(scored_.begin(), scored_.end(), [this](const Scored& scored) {
     return scored.target->doubt.empty() && IsRefined(scored) &&
            (scored.score.status == CandidateScore::Status::kDone ||
             scored.score.status == CandidateScore::Status::kPruned) &&
-           ExtraProbability(scored.score, input_.part) <= input_.config.accept_extra &&
-           Runs(scored);
+           ExtraProbability(scored.score, input_.part) <= input_.config.accept_extra;
   });
 }
 

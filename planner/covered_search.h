@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +18,6 @@ Rank RankOf(bool free, bool doubtful, const CandidateScore* score);
 struct Target {
   const PerceivedTube* tube = nullptr;
   std::string doubt;  ///< Why it comes late; empty: for no reason.
-  double cost = 0.0;  ///< Of taking this tube, whatever the motion.
   GraspSites sites;
 };
 
@@ -31,8 +28,7 @@ struct Scored {
   double grasp_at_m = 0.0, grasp_cost = 0.0;  ///< Where it would be held if all motions were good.
   int touches = 0;                            ///< Other tubes, by its swept volume.
   CandidateScore score;
-  int samples = 0;               ///< That were asked for and not given up.
-  std::optional<bool> runnable;  ///< By the arm; not known before it was asked.
+  int samples = 0;  ///< That were asked for and not given up.
 };
 
 /// Probability that another tube comes along: the samples' share drawn towards what the predicted
@@ -46,7 +42,6 @@ struct SearchInput {
   const Bin& bin;
   const PlannerConfig& config;
   const EvaluateFunction& evaluate;
-  const std::function<bool(const Scored&)>& runnable;  ///< Whether the arm can run it.
   std::uint64_t seed = 1;
   double top_m = 0.0;  ///< Of the highest tube.
 };
@@ -55,8 +50,8 @@ struct SearchInput {
 /// "up", escapes and ways out of every tube, then the long list of separations for the `separated`
 /// best. Each motion is rolled out once, those that touch the fewest tubes first, as far as it may
 /// still be among the best `refined`; then these with all samples, until the best of all has them:
-/// one lucky roll-out wins too easily among many. Only what the arm can run is among the best.
-/// Candidates, rejections and times go into the result.
+/// one lucky roll-out wins too easily among many. Candidates, rejections and times go into the
+/// result.
 class CoveredSearch {
  public:
   CoveredSearch(const SearchInput& input, const std::vector<Target>& targets, PlanResult& result);
@@ -76,13 +71,11 @@ class CoveredSearch {
   void AddMotions(const Target& target, MotionSet set);
   void ScreenWaiting();
   void Refine();
-  bool Runs(Scored& scored) const;
   std::vector<Scored*> InOrder();
-  std::vector<Scored*> Best();
   bool IsRefined(const Scored& scored) const;
   double CostOf(const Scored& scored, const CandidateScore& score) const;
   double WorthUpTo(const Scored& scored, const Scored& rival) const;
-  bool AnyPromising();
+  bool AnyPromising() const;
   void AddSamples(const std::vector<Scored*>& motions, int samples,
                   const std::vector<double>& give_up_m = {});
 

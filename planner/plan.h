@@ -28,10 +28,9 @@ struct PlannerConfig {
   double max_slope_deg = 40.0;  ///< Steepest tangent that a vertical gripper may take.
   double finger_clearance_m = 0.002;  ///< Least distance of fingers and gripper body to all.
   int max_points = 6;  ///< Largest number of 3 mm cubes with measured points in the way.
-  double weight_height = 0.2, weight_centre = 0.5;
-  double weight_trajectory = 3.0;  ///< The paper's is 0.3.
-  double weight_clearance = 0.1;   ///< Not in the paper: little room around the fingers costs.
-  double weight_tilt = 0.1;  ///< Not in the paper: tools that lean cost, 35 degrees this much.
+  double weight_height = 0.2, weight_centre = 0.5, weight_trajectory = 0.3;
+  double weight_clearance = 0.1;  ///< Not in the paper: little room around the fingers costs.
+  double weight_tilt = 0.1;       ///< Not in the paper: tools that lean cost, 35 degrees this much.
   double weight_confidence = 0.2;  ///< Not in the paper: doubt about the tube costs.
   double weight_release = 0.1;     ///< Not in the paper: setting fewer than three tubes free costs.
   double weight_extra = 3.0;       ///< Not in the paper: probability that another tube comes along.
@@ -47,7 +46,7 @@ struct PlannerConfig {
   /// samples of the best motions.
   double max_simulated_s = 30.0;
   int samples = 5;          ///< Roll-outs of the best candidates; 1 is the paper's cost.
-  int refined = 1;          ///< So many of the best candidates get all samples.
+  int refined = 2;          ///< So many of the best candidates get all samples.
   int max_candidates = 12;  ///< Motions that are simulated before it is known whether one will do.
   int max_plans = 8;        ///< Ranked plans that are checked for the arm and returned.
   int plans_per_tube = 3;

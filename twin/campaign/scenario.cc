@@ -177,7 +177,6 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
     planner.max_candidates = 1000;  // All weakly occluded tubes are simulated before the choice.
     planner.weight_clearance = planner.weight_confidence = planner.weight_extra = 0.0;
     planner.weight_release = 0.0;
-    planner.weight_trajectory = 0.3;
     planner.min_length_share = planner.min_confidence = 0.0;
     planner.nudges = 0;
     scenario.evaluator.give_up_m = planner.max_displacement_m;  // Where the paper's cost ends.
