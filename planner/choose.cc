@@ -16,9 +16,16 @@ namespace tubetwin {
 namespace {
 
 constexpr double kManyReleased = 3.0;
+constexpr std::size_t kMostTried =
+    6;  // Places to hold a tube for one motion, before it is rolled out.
 constexpr double kApart_m = 0.020;  // Two tries nearer than this are one try.
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+bool IsNearAny(const std::vector<double>& tried_m, double at_m) {
+  return std::any_of(tried_m.begin(), tried_m.end(),
+                     [&](double other_m) { return std::abs(other_m - at_m) < kApart_m - 1e-9; });
 }
 
 struct Option {
@@ -91,7 +98,12 @@ class Chooser {
         continue;
       }
       if (tube.centerline_N.size() < 2 || Length(tube.centerline_N) <= 0.0) continue;
-      Target target{&tube, DoubtAbout(tube, part_, config_), {}};
+      const double released = std::min(1.0, ReleasedBy(scene_, tube.id) / kManyReleased);
+      Target target{&tube,
+                    DoubtAbout(tube, part_, config_),
+                    config_.weight_confidence * (1.0 - tube.confidence) +
+                        config_.weight_release * (1.0 - released),
+                    {}};
       target.sites = FindGraspSites(scene_, tube, points_N_, bin_, config_);
       Report(target.sites.rejections);
       if (target.sites.sites.empty()) {
@@ -145,17 +157,50 @@ class Chooser {
   void TryCovered(std::vector<Option>& options) {
     const std::vector<Option> free = options;
     const std::vector<Target> targets = CoveredTargets();
-    CoveredSearch search({scene_, part_, bin_, config_, evaluate_, seed_, top_m_}, targets,
-                         result_);
+    const std::function<std::optional<Grasp>(const Target&, const CandidateMotion&)> runnable =
+        [this](const Target& target, const CandidateMotion& motion) {
+          return FirstRunnable(target, motion);
+        };
+    CoveredSearch search({scene_, part_, bin_, config_, evaluate_, runnable, seed_, top_m_},
+                         targets, result_);
     while (result_.plans.empty() && search.Next()) {
       options = free;
       for (const Scored& scored : search.scored()) {
+        const std::size_t before = options.size();
         AddOptions(*scored.target, scored.motion, &scored.score, options);
+        if (scored.samples > 0) continue;
+        // Only a lower bound is known: after all that were rolled out whole.
+        for (std::size_t k = before; k < options.size(); ++k) {
+          options[k].rank = std::max(options[k].rank, Rank::kDoubtfulCovered);
+          options[k].plan.note = "its roll-out was given up when another motion was better";
+        }
       }
       Sort(options);
       TryAll(options, Rank::kCertainCovered);
     }
     search.Finish();
+  }
+
+  // The best grasp with which the arm can run a motion, of a few that are apart.
+  std::optional<Grasp> FirstRunnable(const Target& target, const CandidateMotion& motion) {
+    std::vector<double> tried;
+    std::string against;
+    for (Grasp& grasp :
+         RankGrasps(target.sites, *target.tube, motion, 0.0, top_m_, bin_, config_).grasps) {
+      if (tried.size() == kMostTried) break;
+      if (IsNearAny(tried, grasp.at_m)) continue;
+      tried.push_back(grasp.at_m);
+      const std::optional<std::string> reason = feasible_(grasp, motion);
+      if (!reason) return grasp;
+      if (against.empty()) against = *reason;
+      grasp.X_NG.linear() = grasp.X_NG.linear() * RotZ(kPi);
+      if (!feasible_(grasp, motion)) return grasp;
+    }
+    if (!tried.empty()) {
+      Report({{target.tube->id, motion.name,
+               "at " + Number(std::round(tried.front() * 1e3) / 1e3) + " m", "arm: " + against}});
+    }
+    return std::nullopt;
   }
 
   // All grasps of a tube for a motion; `score` null: the simulator was not needed.
@@ -182,10 +227,8 @@ class Chooser {
         option.plan.prediction = Prediction{score->displacement_m, score->extra_probability,
                                             static_cast<int>(score->samples.size())};
       }
-      const double released = std::min(1.0, ReleasedBy(scene_, tube.id) / kManyReleased);
       option.plan.cost =
-          grasp.cost + config_.weight_confidence * (1.0 - tube.confidence) +
-          config_.weight_release * (1.0 - released) +
+          grasp.cost + target.cost +
           (score != nullptr ? config_.weight_extra * ExtraProbability(*score, part_) : 0.0);
       option.plan.note =
           option.rank == Rank::kJams ? "the motion jammed in the simulator" : target.doubt;
@@ -212,9 +255,7 @@ class Chooser {
     if (static_cast<int>(result_.plans.size()) >= config_.max_plans) return;
     if (kept_[id] >= config_.plans_per_tube) return;
     std::vector<double>& tried = tried_[{id, option.plan.motion.name}];
-    for (const double at_m : tried) {
-      if (std::abs(at_m - option.plan.grasp.at_m) < kApart_m - 1e-9) return;
-    }
+    if (IsNearAny(tried, option.plan.grasp.at_m)) return;
     tried.push_back(option.plan.grasp.at_m);
     PickPlan plan = option.plan;
     const std::optional<std::string> against = feasible_(plan.grasp, plan.motion);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <limits>
 
 #include "hw_bridge/base/error.h"
@@ -154,16 +155,25 @@ void CoveredSearch::ScreenWaiting() {
   while (next < waiting_.size() &&
          (scored_.empty() || simulated_s_ < (1.0 - kKeptForSamples) * config.max_simulated_s)) {
     const std::vector<Scored*> order = InOrder();
-    const std::size_t first = scored_.size(), end = std::min(next + kAtOnce, waiting_.size());
+    // With one sample there is no second question that could set a wrong one right.
+    const Scored* rival =
+        config.samples > 1 && order.size() >= static_cast<std::size_t>(config.refined)
+            ? order[config.refined - 1]
+            : nullptr;
+    std::vector<Scored> wave;
     std::vector<double> give_up_m;
-    for (std::size_t k = next; k < end; ++k) {
-      // With one sample there is no second question that could set a wrong one right.
-      const bool limited =
-          config.samples > 1 && order.size() >= static_cast<std::size_t>(config.refined);
-      give_up_m.push_back(limited ? WorthUpTo(waiting_[k], *order[config.refined - 1])
-                                  : std::numeric_limits<double>::infinity());
+    for (; next < waiting_.size() && wave.size() < kAtOnce; ++next) {
+      Scored& waiting = waiting_[next];
+      const std::optional<Grasp> grasp = input_.runnable(*waiting.target, waiting.motion);
+      if (!grasp) continue;
+      waiting.grasp_at_m = grasp->at_m;
+      waiting.grasp_cost = grasp->cost;
+      give_up_m.push_back(rival != nullptr ? WorthUpTo(waiting, *rival)
+                                           : std::numeric_limits<double>::infinity());
+      wave.push_back(std::move(waiting));
     }
-    for (; next < end; ++next) scored_.push_back(std::move(waiting_[next]));
+    const std::size_t first = scored_.size();
+    std::move(wave.begin(), wave.end(), std::back_inserter(scored_));
     std::vector<Scored*> asked;
     for (std::size_t k = first; k < scored_.size(); ++k) asked.push_back(&scored_[k]);
     AddSamples(asked, 1, give_up_m);
@@ -212,8 +222,7 @@ bool CoveredSearch::IsRefined(const Scored& scored) const {
 double CoveredSearch::CostOf(const Scored& scored, const CandidateScore& score) const {
   const PlannerConfig& config = input_.config;
   const double share = std::min(score.displacement_m / config.max_displacement_m, 1.0);
-  return scored.grasp_cost + config.weight_trajectory * share +
-         config.weight_confidence * (1.0 - scored.target->tube->confidence) +
+  return scored.grasp_cost + config.weight_trajectory * share + scored.target->cost +
          config.weight_extra * ExtraProbability(score, input_.part);
 }
 

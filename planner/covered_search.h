@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@ Rank RankOf(bool free, bool doubtful, const CandidateScore* score);
 struct Target {
   const PerceivedTube* tube = nullptr;
   std::string doubt;  ///< Why it comes late; empty: for no reason.
+  double cost = 0.0;  ///< Of taking this tube, whatever the motion.
   GraspSites sites;
 };
 
@@ -25,7 +28,7 @@ struct Target {
 struct Scored {
   const Target* target = nullptr;
   CandidateMotion motion;
-  double grasp_at_m = 0.0, grasp_cost = 0.0;  ///< Where it would be held if all motions were good.
+  double grasp_at_m = 0.0, grasp_cost = 0.0;  ///< The best grasp with which the arm can run it.
   int touches = 0;                            ///< Other tubes, by its swept volume.
   CandidateScore score;
   int samples = 0;  ///< That were asked for and not given up.
@@ -42,6 +45,8 @@ struct SearchInput {
   const Bin& bin;
   const PlannerConfig& config;
   const EvaluateFunction& evaluate;
+  /// The best grasp with which the arm can run a motion; none: it reports why.
+  const std::function<std::optional<Grasp>(const Target&, const CandidateMotion&)>& runnable;
   std::uint64_t seed = 1;
   double top_m = 0.0;  ///< Of the highest tube.
 };
@@ -50,8 +55,8 @@ struct SearchInput {
 /// "up", escapes and ways out of every tube, then the long list of separations for the `separated`
 /// best. Each motion is rolled out once, those that touch the fewest tubes first, as far as it may
 /// still be among the best `refined`; then these with all samples, until the best of all has them:
-/// one lucky roll-out wins too easily among many. Candidates, rejections and times go into the
-/// result.
+/// one lucky roll-out wins too easily among many. What the arm cannot run is not rolled out.
+/// Candidates, rejections and times go into the result.
 class CoveredSearch {
  public:
   CoveredSearch(const SearchInput& input, const std::vector<Target>& targets, PlanResult& result);
