@@ -16,8 +16,6 @@ namespace tubetwin {
 namespace {
 
 constexpr double kManyReleased = 3.0;
-constexpr std::size_t kMostTried =
-    6;  // Places to hold a tube for one motion, before it is rolled out.
 constexpr double kApart_m = 0.020;  // Two tries nearer than this are one try.
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -181,13 +179,12 @@ class Chooser {
     search.Finish();
   }
 
-  // The best grasp with which the arm can run a motion, of a few that are apart.
+  // The best grasp with which the arm can run a motion, of those that are apart.
   std::optional<Grasp> FirstRunnable(const Target& target, const CandidateMotion& motion) {
     std::vector<double> tried;
     std::string against;
     for (Grasp& grasp :
          RankGrasps(target.sites, *target.tube, motion, 0.0, top_m_, bin_, config_).grasps) {
-      if (tried.size() == kMostTried) break;
       if (IsNearAny(tried, grasp.at_m)) continue;
       tried.push_back(grasp.at_m);
       const std::optional<std::string> reason = feasible_(grasp, motion);
