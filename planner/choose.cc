@@ -187,17 +187,26 @@ class Chooser {
          RankGrasps(target.sites, *target.tube, motion, 0.0, top_m_, bin_, config_).grasps) {
       if (IsNearAny(tried, grasp.at_m)) continue;
       tried.push_back(grasp.at_m);
-      const std::optional<std::string> reason = feasible_(grasp, motion);
+      const std::optional<std::string> reason = AgainstEitherYaw(grasp, motion);
       if (!reason) return grasp;
       if (against.empty()) against = *reason;
-      grasp.X_NG.linear() = grasp.X_NG.linear() * RotZ(kPi);
-      if (!feasible_(grasp, motion)) return grasp;
     }
-    if (!tried.empty()) {
-      Report({{target.tube->id, motion.name,
-               "at " + Number(std::round(tried.front() * 1e3) / 1e3) + " m", "arm: " + against}});
-    }
+    if (!tried.empty()) ReportArm(motion, tried.front(), against);
     return std::nullopt;
+  }
+
+  // Why the arm can run the motion neither with this grasp nor with the hand turned by half a turn;
+  // nothing: it can, with the grasp as it is then.
+  std::optional<std::string> AgainstEitherYaw(Grasp& grasp, const CandidateMotion& motion) const {
+    const std::optional<std::string> against = feasible_(grasp, motion);
+    if (!against) return std::nullopt;
+    grasp.X_NG.linear() = grasp.X_NG.linear() * RotZ(kPi);
+    return feasible_(grasp, motion) ? against : std::nullopt;
+  }
+
+  void ReportArm(const CandidateMotion& motion, double at_m, const std::string& against) {
+    Report({{motion.tube, motion.name, "at " + Number(std::round(at_m * 1e3) / 1e3) + " m",
+             "arm: " + against}});
   }
 
   // All grasps of a tube for a motion; `score` null: the simulator was not needed.
@@ -255,15 +264,9 @@ class Chooser {
     if (IsNearAny(tried, option.plan.grasp.at_m)) return;
     tried.push_back(option.plan.grasp.at_m);
     PickPlan plan = option.plan;
-    const std::optional<std::string> against = feasible_(plan.grasp, plan.motion);
-    if (against) {
-      plan.grasp.X_NG.linear() = plan.grasp.X_NG.linear() * RotZ(kPi);
-      if (feasible_(plan.grasp, plan.motion)) {
-        result_.rejections.push_back(
-            {id, plan.motion.name, "at " + Number(std::round(plan.grasp.at_m * 1e3) / 1e3) + " m",
-             "arm: " + *against});
-        return;
-      }
+    if (const std::optional<std::string> against = AgainstEitherYaw(plan.grasp, plan.motion)) {
+      ReportArm(plan.motion, plan.grasp.at_m, *against);
+      return;
     }
     ++kept_[id];
     result_.plans.push_back(std::move(plan));

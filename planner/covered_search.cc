@@ -46,7 +46,11 @@ CandidateScore Merged(CandidateScore score, const CandidateScore& more) {
   return score;
 }
 
-bool IsFree(const Target& target) { return target.tube->tube_class == TubeClass::kFree; }
+// `score` null: before the simulator is asked.
+Rank RankOf(const Scored& scored, const CandidateScore* score) {
+  const bool free = scored.target->tube->tube_class == TubeClass::kFree;
+  return RankOf(free, !scored.target->doubt.empty(), score);
+}
 
 }  // namespace
 
@@ -204,11 +208,8 @@ void CoveredSearch::Refine() {
 std::vector<Scored*> CoveredSearch::InOrder() {
   std::vector<Scored*> order;
   for (Scored& scored : scored_) order.push_back(&scored);
-  const auto rank = [](const Scored* scored) {
-    return RankOf(IsFree(*scored->target), !scored->target->doubt.empty(), &scored->score);
-  };
-  std::stable_sort(order.begin(), order.end(), [&](const Scored* a, const Scored* b) {
-    const Rank rank_a = rank(a), rank_b = rank(b);
+  std::stable_sort(order.begin(), order.end(), [this](const Scored* a, const Scored* b) {
+    const Rank rank_a = RankOf(*a, &a->score), rank_b = RankOf(*b, &b->score);
     return rank_a != rank_b ? rank_a < rank_b : CostOf(*a, a->score) < CostOf(*b, b->score);
   });
   return order;
@@ -229,10 +230,7 @@ double CoveredSearch::CostOf(const Scored& scored, const CandidateScore& score) 
 // The displacement with which the first roll-out of a motion makes it dearer than a rival.
 double CoveredSearch::WorthUpTo(const Scored& scored, const Scored& rival) const {
   constexpr int kHalvings = 20;
-  const auto rank = [](const Scored& of, const CandidateScore* score) {
-    return RankOf(IsFree(*of.target), !of.target->doubt.empty(), score);
-  };
-  const Rank own = rank(scored, nullptr), other = rank(rival, &rival.score);
+  const Rank own = RankOf(scored, nullptr), other = RankOf(rival, &rival.score);
   if (own < other) return std::numeric_limits<double>::infinity();
   if (other < own) return 0.0;
   CandidateScore score;
