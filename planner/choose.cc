@@ -155,10 +155,9 @@ class Chooser {
   void TryCovered(std::vector<Option>& options) {
     const std::vector<Option> free = options;
     const std::vector<Target> targets = CoveredTargets();
-    const std::function<std::optional<Grasp>(const Target&, const CandidateMotion&)> runnable =
-        [this](const Target& target, const CandidateMotion& motion) {
-          return FirstRunnable(target, motion);
-        };
+    const RunnableFunction runnable = [this](const Target& target, const CandidateMotion& motion) {
+      return FirstRunnable(target, motion);
+    };
     CoveredSearch search({scene_, part_, bin_, config_, evaluate_, runnable, seed_, top_m_},
                          targets, result_);
     while (result_.plans.empty() && search.Next()) {

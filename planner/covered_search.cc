@@ -24,6 +24,7 @@ constexpr int kSamplesAtOnce = 2;  // A motion that is bad in one of them need n
 // simulated time is kept from first roll-outs for the samples of the best.
 constexpr std::size_t kAtOnce = 6;
 constexpr double kKeptForSamples = 0.3;
+constexpr double kTubes = 7.0;  // That `max_simulated_s` is meant for.
 
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -74,16 +75,18 @@ CoveredSearch::CoveredSearch(const SearchInput& input, const std::vector<Target>
     : input_(input),
       targets_(targets),
       result_(result),
-      separated_(input.config.separated <= 0 || targets.empty()) {}
+      all_separated_(targets.empty()),
+      most_simulated_s_(input.config.max_simulated_s * kTubes /
+                        std::max<std::size_t>(input.scene.tubes.size(), 1)) {}
 
-bool CoveredSearch::Exhausted() const { return next_ == targets_.size() && separated_; }
+bool CoveredSearch::Exhausted() const { return next_ == targets_.size() && all_separated_; }
 
 bool CoveredSearch::Next() {
   if (Exhausted()) return false;
   do {
     ScoreMore();
     Refine();
-  } while (!Exhausted() && !AnyPromising() && simulated_s_ < input_.config.max_simulated_s);
+  } while (!Exhausted() && !AnyPromising() && simulated_s_ < most_simulated_s_);
   return true;
 }
 
@@ -98,10 +101,7 @@ void CoveredSearch::Finish() {
 }
 
 void CoveredSearch::ScoreMore() {
-  if (next_ == targets_.size()) {
-    AddSeparations();
-    separated_ = true;
-  }
+  if (next_ == targets_.size()) AddSeparations();
   while (next_ < targets_.size() &&
          static_cast<int>(waiting_.size()) < input_.config.max_candidates) {
     AddMotions(targets_[next_++]);
@@ -109,18 +109,25 @@ void CoveredSearch::ScoreMore() {
   ScreenWaiting();
 }
 
+// Of the best tube that has not had them.
 void CoveredSearch::AddSeparations() {
-  std::vector<const Target*> chosen;
-  for (const Scored* scored : InOrder()) {
-    if (static_cast<int>(chosen.size()) >= input_.config.separated) break;
-    if (std::find(chosen.begin(), chosen.end(), scored->target) == chosen.end()) {
-      chosen.push_back(scored->target);
+  const Target* best = nullptr;
+  if (static_cast<int>(separated_.size()) < input_.config.separated) {
+    for (const Scored* scored : InOrder()) {
+      if (std::find(separated_.begin(), separated_.end(), scored->target) != separated_.end()) {
+        continue;
+      }
+      best = scored->target;
+      break;
     }
   }
-  for (const Target* target : chosen) {
-    AddMotions(*target, MakeTilts(input_.scene, *target->tube, input_.bin, input_.config));
-    AddMotions(*target, MakeSeparations(*target->tube, input_.bin, input_.config));
+  if (best == nullptr) {
+    all_separated_ = true;
+    return;
   }
+  separated_.push_back(best);
+  AddMotions(*best, MakeTilts(input_.scene, *best->tube, input_.bin, input_.config));
+  AddMotions(*best, MakeSeparations(*best->tube, input_.bin, input_.config));
 }
 
 void CoveredSearch::AddMotions(const Target& target) {
@@ -157,7 +164,7 @@ void CoveredSearch::ScreenWaiting() {
   });
   std::size_t next = 0;
   while (next < waiting_.size() &&
-         (scored_.empty() || simulated_s_ < (1.0 - kKeptForSamples) * config.max_simulated_s)) {
+         (scored_.empty() || simulated_s_ < (1.0 - kKeptForSamples) * most_simulated_s_)) {
     const std::vector<Scored*> order = InOrder();
     // With one sample there is no second question that could set a wrong one right.
     const Scored* rival =
@@ -185,8 +192,8 @@ void CoveredSearch::ScreenWaiting() {
   for (; next < waiting_.size(); ++next) {
     const CandidateMotion& motion = waiting_[next].motion;
     result_.rejections.push_back({motion.tube, motion.name, "",
-                                  "not rolled out: planner.max_simulated_s, " +
-                                      Number(config.max_simulated_s) + " s, is spent"});
+                                  "not rolled out: the " + Number(most_simulated_s_) +
+                                      " s of planner.max_simulated_s are spent"});
   }
   waiting_.clear();
 }
@@ -195,7 +202,9 @@ void CoveredSearch::Refine() {
   for (;;) {
     std::vector<Scored*> order = InOrder();
     if (order.empty() || IsRefined(*order.front())) return;
-    if (simulated_s_ >= input_.config.max_simulated_s) return;
+    if (simulated_s_ >= most_simulated_s_) return;
+    // What is left to score is asked about before a motion that cannot promise anything.
+    if (!Exhausted() && !MayPromise(*order.front())) return;
     order.resize(std::min<std::size_t>(order.size(), input_.config.refined));
     std::erase_if(order, [this](const Scored* scored) { return IsRefined(*scored); });
     // Those with as many samples as the best: one question for all.
@@ -218,6 +227,15 @@ std::vector<Scored*> CoveredSearch::InOrder() {
 bool CoveredSearch::IsRefined(const Scored& scored) const {
   return scored.score.status != CandidateScore::Status::kDone ||
          scored.samples >= input_.config.samples;
+}
+
+// Whether it would promise to take its tube alone if it did in all samples to come.
+bool CoveredSearch::MayPromise(const Scored& scored) const {
+  CandidateScore score = scored.score;
+  const double known = static_cast<double>(score.samples.size());
+  score.samples.resize(std::max<std::size_t>(score.samples.size(), input_.config.samples));
+  score.extra_probability *= known / static_cast<double>(score.samples.size());
+  return ExtraProbability(score, input_.part) <= input_.config.accept_extra;
 }
 
 double CoveredSearch::CostOf(const Scored& scored, const CandidateScore& score) const {

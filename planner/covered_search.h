@@ -38,6 +38,10 @@ struct Scored {
 /// displacement says, which counts as some samples. A motion that touches nothing: 0.
 double ExtraProbability(const CandidateScore& score, const Part& part);
 
+/// The best grasp with which the arm can run a motion; none: it reports why.
+using RunnableFunction =
+    std::function<std::optional<Grasp>(const Target& target, const CandidateMotion& motion)>;
+
 /// What a search needs to know; all must outlive it.
 struct SearchInput {
   const TubeScene& scene;
@@ -45,24 +49,25 @@ struct SearchInput {
   const Bin& bin;
   const PlannerConfig& config;
   const EvaluateFunction& evaluate;
-  /// The best grasp with which the arm can run a motion; none: it reports why.
-  const std::function<std::optional<Grasp>(const Target&, const CandidateMotion&)>& runnable;
+  const RunnableFunction& runnable;
   std::uint64_t seed = 1;
   double top_m = 0.0;  ///< Of the highest tube.
 };
 
 /// Scores motions of covered tubes in the order of `targets`, in batches of about `max_candidates`:
-/// "up", escapes and ways out of every tube, then the long list of separations for the `separated`
-/// best. Each motion is rolled out once, those that touch the fewest tubes first, as far as it may
-/// still be among the best `refined`; then these with all samples, until the best of all has them:
-/// one lucky roll-out wins too easily among many. What the arm cannot run is not rolled out.
-/// Candidates, rejections and times go into the result.
+/// "up", escapes and ways out of every tube, then the long list of separations, a tube at a time,
+/// for the `separated` best. Each motion is rolled out once, those that touch the fewest tubes
+/// first, as far as it may still be among the best `refined`; then these with all samples, until
+/// the best of all has them: one lucky roll-out wins too easily among many. A best motion that
+/// cannot promise anything waits with its samples until all have been rolled out once. What the arm
+/// cannot run is not rolled out. Candidates, rejections and times go into the result.
 class CoveredSearch {
  public:
   CoveredSearch(const SearchInput& input, const std::vector<Target>& targets, PlanResult& result);
 
   /// Goes on until a motion promises to take its tube alone (`accept_extra`), nothing is left to
-  /// score or `max_simulated_s` were spent; false when nothing was left before.
+  /// score or the simulated time is spent: `max_simulated_s` with seven tubes, of fewer, which are
+  /// simulated faster, more in proportion; false when nothing was left before.
   bool Next();
   const std::vector<Scored>& scored() const { return scored_; }
   /// Moves the scores into the result.
@@ -78,6 +83,7 @@ class CoveredSearch {
   void Refine();
   std::vector<Scored*> InOrder();
   bool IsRefined(const Scored& scored) const;
+  bool MayPromise(const Scored& scored) const;
   double CostOf(const Scored& scored, const CandidateScore& score) const;
   double WorthUpTo(const Scored& scored, const Scored& rival) const;
   bool AnyPromising() const;
@@ -88,8 +94,9 @@ class CoveredSearch {
   const std::vector<Target>& targets_;
   PlanResult& result_;
   std::size_t next_ = 0;
-  bool separated_ = false;
-  double simulated_s_ = 0.0;
+  std::vector<const Target*> separated_;
+  bool all_separated_ = false;
+  double simulated_s_ = 0.0, most_simulated_s_ = 0.0;
   std::vector<Scored> waiting_;  ///< To be rolled out for the first time.
   std::vector<Scored> scored_;
 };

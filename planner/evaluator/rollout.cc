@@ -132,12 +132,12 @@ struct Disturbance {
 
 // What the others have done in the first `sim_s` seconds, those that are carried `rise_m` higher.
 Disturbance Measure(const RolloutScene& scene, int index, double sim_s, const mjModel& model,
-                    const mjData& data, const Lifted* lifted = nullptr, double rise_m = 0.0) {
+                    const mjData& data, const Lifted& lifted, double rise_m = 0.0) {
   Disturbance out;
   for (int i = 0; i < static_cast<int>(scene.tubes().size()); ++i) {
     if (i == index) continue;
     Vector3 centre = scene.tubes()[i].CentreOfMass_W(model, data);
-    if (lifted != nullptr && lifted->Carries(i)) centre.z() += rise_m;
+    if (lifted.Carries(i)) centre.z() += rise_m;
     const Vector3& before = scene.centres_N()[i];
     const double creep_m = scene.creep_m_s()[i] * sim_s;
     out.displacement_m += std::max(0.0, (centre - before).norm() - creep_m);
@@ -249,7 +249,7 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
       rise_m = profile.At(profile.duration_s()).z() - p_NHand.z();
       break;
     }
-    if (Measure(scene, index, step * dt, model, data).displacement_m > config.give_up_m) {
+    if (Measure(scene, index, step * dt, model, data, lifted).displacement_m > config.give_up_m) {
       outcome.given_up = true;
       break;
     }
@@ -257,7 +257,7 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
   outcome.sim_s = step * dt;
   if (outcome.status == Status::kDiverged) return outcome;
   GuardEngine([&] { mj_forward(&model, &data); });
-  const Disturbance others = Measure(scene, index, outcome.sim_s, model, data, &lifted, rise_m);
+  const Disturbance others = Measure(scene, index, outcome.sim_s, model, data, lifted, rise_m);
   outcome.displacement_m = others.displacement_m;
   outcome.extra = others.extra;
   return outcome;

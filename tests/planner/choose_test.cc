@@ -1,6 +1,9 @@
 #include "planner/choose.h"
 
 #include <cmath>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "hw_bridge/base/json.h"
 #include "planner/points.h"
@@ -17,7 +20,8 @@ std::optional<std::string> Always(const Grasp&, const CandidateMotion&) { return
 // Likes "escape-", sees "up" bring another tube along and "escape+" jam; keeps what it was asked.
 struct FakeEvaluator {
   int calls = 0;
-  double sim_s = 0.0;  // Of each roll-out.
+  double sim_s = 0.0;     // Of each roll-out.
+  bool hopeless = false;  // Every motion brings others along.
   EvaluationRequest first, last;
   std::vector<EvaluationRequest> requests;
   EvaluateFunction Function() {
@@ -31,8 +35,10 @@ struct FakeEvaluator {
         score.tube = candidate.tube;
         score.motion = candidate.name;
         score.sim_s = sim_s * r.samples;
-        score.displacement_m = score.cost = candidate.name == "escape-" ? 0.01 : 0.9;
-        score.extra_probability = candidate.name == "up" ? 1.0 : 0.0;
+        const bool quiet = candidate.name == "escape-" && !hopeless;
+        score.displacement_m = score.cost = quiet ? 0.01 : 0.9;
+        score.extra_probability = candidate.name == "up" || hopeless ? 1.0 : 0.0;
+        score.samples.assign(hopeless ? r.samples : 0, score.displacement_m);
         if (candidate.name == "escape+") score.status = CandidateScore::Status::kJammed;
         result.candidates.push_back(score);
       }
@@ -164,15 +170,40 @@ TEST_CASE("Motions are rolled out as far as they may still be among the best", "
   }
 
   FakeEvaluator slow;
-  slow.sim_s = config.max_simulated_s / 6;
+  slow.sim_s = config.max_simulated_s * 7.0 / 6.0 / 6.0;  // Six motions of six tubes.
   const PlanResult cut = Plan(scene, config, slow);
   CHECK(slow.calls == 1);
   CHECK_FALSE(cut.plans.empty());
   int left = 0;
-  for (const Rejection& rejection : cut.rejections) {
-    left += rejection.reason == "not rolled out: planner.max_simulated_s, 30 s, is spent" ? 1 : 0;
-  }
+  const std::string spent = "not rolled out: the 35 s of planner.max_simulated_s are spent";
+  for (const Rejection& rejection : cut.rejections) left += rejection.reason == spent ? 1 : 0;
   CHECK(left > 0);
+}
+
+TEST_CASE("Where nothing promises a tube alone, all is asked once before anything is asked again",
+          "[unit]") {
+  std::vector<Polyline> lines_N;
+  for (const double y : {-0.1, 0.1}) {
+    lines_N.push_back(StraightLine({-0.15, y, kRadius}, {0.25, y, kRadius}));
+    lines_N.push_back(StraightLine({0.05, y - 0.08, 3 * kRadius}, {0.05, y + 0.08, 3 * kRadius}));
+  }
+  PlannerConfig config;
+  config.exclude_free = true;
+  FakeEvaluator evaluator;
+  evaluator.hopeless = true;
+  Plan(PerfectScene(lines_N, kRadius), config, evaluator);
+  std::set<int> separated;
+  bool again = false;
+  for (const EvaluationRequest& request : evaluator.requests) {
+    if (request.first_sample > 0) again = true;
+    for (const CandidateMotion& candidate : request.candidates) {
+      if (candidate.name != "up_slow" || request.first_sample > 0) continue;
+      separated.insert(candidate.tube);
+      CHECK_FALSE(again);
+    }
+  }
+  CHECK(separated == std::set<int>{1, 3});
+  CHECK(again);
 }
 
 TEST_CASE("Little covered tubes are simulated first, the others only if need be", "[unit]") {
