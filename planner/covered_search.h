@@ -66,8 +66,9 @@ class CoveredSearch {
   CoveredSearch(const SearchInput& input, const std::vector<Target>& targets, PlanResult& result);
 
   /// Goes on until a motion promises to take its tube alone (`accept_extra`), nothing is left to
-  /// score or the simulated time is spent: `max_simulated_s` with seven tubes, of fewer, which are
-  /// simulated faster, more in proportion; false when nothing was left before.
+  /// score or the simulated time is spent: `max_simulated_s` with seven hoses; of fewer more in
+  /// proportion and of rigid tubes thrice as much, for these are simulated as much faster. False
+  /// when nothing was left before.
   bool Next();
   const std::vector<Scored>& scored() const { return scored_; }
   /// Moves the scores into the result.

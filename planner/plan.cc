@@ -38,8 +38,8 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
           "larger probability",
           accept_extra, {0.0, 1.0});
   v.Field("max_simulated_s",
-          "no more motions are asked about after so much simulated time of seven tubes (of fewer, "
-          "more in proportion): the best of the others is taken",
+          "no more motions are asked about after so much simulated time of seven hoses (of fewer "
+          "more in proportion, of rigid tubes thrice as much): the best of the others is taken",
           max_simulated_s, {1, 1e6});
   v.Field("separated",
           "so many covered tubes get the long list of motions (tilts, shakes, hemisphere, helices) "

@@ -42,8 +42,8 @@ struct PlannerConfig {
   /// So many tubes get the long list of motions where none of the short one promises to take a tube
   /// alone. 0: none, as in the paper.
   int separated = 7;
-  /// Roll-outs for one choice among seven tubes end after so much simulated time, part of which is
-  /// kept for the samples of the best motions; fewer tubes get more in proportion.
+  /// Roll-outs for one choice among seven hoses end after so much simulated time, part of which is
+  /// kept for samples of the best motions; fewer tubes get more in proportion, rigid ones thrice.
   double max_simulated_s = 30.0;
   int samples = 5;          ///< Roll-outs of the best candidates; 1 is the paper's cost.
   int refined = 2;          ///< So many of the best candidates get all samples.
