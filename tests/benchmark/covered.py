@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""How a campaign's attempts at covered tubes ended (covered.toml): taken alone by the motion (one tube in the fingers when
+it was weighed, by truth), and one tube placed, shaken off others included. All, by covers, by tubes left in the bin, by
+what was foretold, by motion.
+    python3 covered.py OUT..."""
+import glob
+import json
+import math
+import re
+import sys
+
+
+def wilson(k, n):
+    z, p = 1.959964, k / n
+    centre, half = p + z * z / (2 * n), z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    low, high = (centre - half) / (1 + z * z / n), (centre + half) / (1 + z * z / n)
+    return f"{k}/{n} = {100 * p:.1f} % [{100 * low:.1f}, {100 * high:.1f}]"
+
+
+def attempts(out):
+    for path in sorted(glob.glob(f"{out}/shard-*.jsonl")):
+        for line in open(path):
+            for pick in json.loads(line).get("picks", []):
+                # Free tubes go up without the simulator.
+                if pick["outcome"] != "no_plan" and pick["used_simulator"]:
+                    yield pick
+
+
+def foretold(pick):
+    prediction = pick["prediction"]
+    if prediction["samples"] == 0:
+        return "touches nothing"
+    if prediction["extra_probability"] >= 0.3:
+        return "others come along in 30 % or more of the samples"
+    return f"alone, by {'all' if prediction['samples'] >= 5 else 'fewer'} samples"
+
+
+def main():
+    picks = [pick for out in sys.argv[1:] for pick in attempts(out)]
+    if not picks:
+        sys.exit("covered.py: no attempts at covered tubes; give folders of `campaign run tests/benchmark/covered.toml`")
+    groups = {"all": lambda pick: "all",
+              "covers": lambda pick: "two or more" if pick["class"] == "strong" else "one",
+              "tubes left": lambda pick: str(pick["tubes_in_bin"]),
+              "foretold": foretold,
+              "motion": lambda pick: re.sub(r"[+-]?\d*$", "", pick["motion"]["name"])}
+    print("| | | taken alone | one placed |\n|---|---|---|---|")
+    for name, group in groups.items():
+        for value in sorted({group(pick) for pick in picks}):
+            those = [pick for pick in picks if group(pick) == value]
+            alone = sum(pick["truth"]["held"] == 1 for pick in those)
+            placed = sum(pick["outcome"] == "placed" and pick["success"] for pick in those)
+            print(f"| {name} | {value} | {wilson(alone, len(those))} | {wilson(placed, len(those))} |")
+
+
+main()
