@@ -81,6 +81,7 @@ TEST_CASE("Tubes that cannot lie so are refused by evaluate or simulated apart, 
   Write(folder, "same.csv",
         "tube,index,x,y,z\n0,0,-0.2,0,0.0125\n0,1,0.2,0,0.0125\n"
         "1,0,-0.2,0,0.0125\n1,1,0.2,0,0.0125\n");
+  CheckRefused(folder, "evaluate same.csv --tube 9 --out s.json", 65, "has the tubes ");
   REQUIRE(RunProgram(folder, "evaluate same.csv --motions up --out s.json").code == 0);
   const Json scores = Json::parse(ReadFile(folder.path() + "/s.json"));
   for (const Json& candidate : scores["candidates"]) CHECK(candidate["status"] != "pruned");

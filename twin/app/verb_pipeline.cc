@@ -179,8 +179,8 @@ EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
   if (!found) {
     std::vector<std::string> ids;
     for (const PerceivedTube& tube : scene.tubes) ids.push_back(std::to_string(tube.id));
-    throw Error(ErrorKind::kUsage, "--tube " + std::to_string(*given.tube) + ": " + given.pile +
-                                       " has the tubes " + Join(ids));
+    throw Error(ErrorKind::kBadData, "--tube " + std::to_string(*given.tube) + ": " + given.pile +
+                                         " has the tubes " + Join(ids));
   }
   return request;
 }
