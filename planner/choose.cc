@@ -155,8 +155,9 @@ class Chooser {
   void TryCovered(std::vector<Option>& options) {
     const std::vector<Option> free = options;
     const std::vector<Target> targets = CoveredTargets();
-    const RunnableFunction runnable = [this](const Target& target, const CandidateMotion& motion) {
-      return FirstRunnable(target, motion);
+    const RunnableFunction runnable = [this](const CandidateMotion& motion,
+                                             const std::vector<Grasp>& grasps) {
+      return FirstRunnable(motion, grasps);
     };
     CoveredSearch search({scene_, part_, bin_, config_, evaluate_, runnable, seed_, top_m_},
                          targets, result_);
@@ -178,12 +179,12 @@ class Chooser {
     search.Finish();
   }
 
-  // The best grasp with which the arm can run a motion, of those that are apart.
-  std::optional<Grasp> FirstRunnable(const Target& target, const CandidateMotion& motion) {
+  // The first grasp with which the arm can run a motion, of those that are apart.
+  std::optional<Grasp> FirstRunnable(const CandidateMotion& motion,
+                                     const std::vector<Grasp>& grasps) {
     std::vector<double> tried;
     std::string against;
-    for (Grasp& grasp :
-         RankGrasps(target.sites, *target.tube, motion, 0.0, top_m_, bin_, config_).grasps) {
+    for (Grasp grasp : grasps) {
       if (IsNearAny(tried, grasp.at_m)) continue;
       tried.push_back(grasp.at_m);
       const std::optional<std::string> reason = AgainstEitherYaw(grasp, motion);

@@ -25,8 +25,8 @@ constexpr int kSamplesAtOnce = 2;  // A motion that is bad in one of them need n
 constexpr std::size_t kAtOnce = 6;
 constexpr double kKeptForSamples = 0.3;
 constexpr double kHoses = 7.0;  // That `max_simulated_s` is meant for.
-constexpr double kRigid =
-    3.0;  // As much faster is a rigid tube simulated (`./dev bench evaluator`).
+// As much faster is a rigid tube simulated (`./dev bench evaluator`).
+constexpr double kRigid = 3.0;
 
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -77,11 +77,10 @@ CoveredSearch::CoveredSearch(const SearchInput& input, const std::vector<Target>
     : input_(input),
       targets_(targets),
       result_(result),
-      all_separated_(targets.empty()),
       most_simulated_s_(input.config.max_simulated_s * (input.part.is_hose() ? 1.0 : kRigid) *
                         kHoses / std::max<std::size_t>(input.scene.tubes.size(), 1)) {}
 
-bool CoveredSearch::Exhausted() const { return next_ == targets_.size() && all_separated_; }
+bool CoveredSearch::Exhausted() { return next_ == targets_.size() && NextToSeparate() == nullptr; }
 
 bool CoveredSearch::Next() {
   if (Exhausted()) return false;
@@ -111,25 +110,23 @@ void CoveredSearch::ScoreMore() {
   ScreenWaiting();
 }
 
-// Of the best tube that has not had them.
-void CoveredSearch::AddSeparations() {
-  const Target* best = nullptr;
-  if (static_cast<int>(separated_.size()) < input_.config.separated) {
-    for (const Scored* scored : InOrder()) {
-      if (std::find(separated_.begin(), separated_.end(), scored->target) != separated_.end()) {
-        continue;
-      }
-      best = scored->target;
-      break;
+// The best tube whose long list has not been tried; null: none is to have it any more.
+const Target* CoveredSearch::NextToSeparate() {
+  if (static_cast<int>(separated_.size()) >= input_.config.separated) return nullptr;
+  for (const Scored* scored : InOrder()) {
+    if (std::find(separated_.begin(), separated_.end(), scored->target) == separated_.end()) {
+      return scored->target;
     }
   }
-  if (best == nullptr) {
-    all_separated_ = true;
-    return;
-  }
-  separated_.push_back(best);
-  AddMotions(*best, MakeTilts(input_.scene, *best->tube, input_.bin, input_.config));
-  AddMotions(*best, MakeSeparations(*best->tube, input_.bin, input_.config));
+  return nullptr;
+}
+
+void CoveredSearch::AddSeparations() {
+  const Target* next = NextToSeparate();
+  if (next == nullptr) return;
+  separated_.push_back(next);
+  AddMotions(*next, MakeTilts(input_.scene, *next->tube, input_.bin, input_.config));
+  AddMotions(*next, MakeSeparations(*next->tube, input_.bin, input_.config));
 }
 
 void CoveredSearch::AddMotions(const Target& target) {
@@ -145,22 +142,21 @@ void CoveredSearch::AddMotions(const Target& target, MotionSet set) {
   report(set.rejections);
   for (CandidateMotion& motion : set.motions) {
     result_.candidates.push_back(motion);
-    const GraspSet grasps = RankGrasps(target.sites, *target.tube, motion, 0.0, input_.top_m,
-                                       input_.bin, input_.config);
+    GraspSet grasps = RankGrasps(target.sites, *target.tube, motion, 0.0, input_.top_m, input_.bin,
+                                 input_.config);
     if (grasps.grasps.empty()) {
       report(grasps.rejections);
       report({{target.tube->id, motion.name, "", "no grasp suits this motion"}});
       continue;
     }
-    const Grasp& best = grasps.grasps.front();
     const int touches = CountTouched(input_.scene, motion);
-    waiting_.push_back({&target, std::move(motion), best.at_m, best.cost, touches, {}, 0});
+    waiting_.push_back({&target, std::move(motion), std::move(grasps.grasps), touches});
   }
 }
 
 void CoveredSearch::ScreenWaiting() {
   const PlannerConfig& config = input_.config;
-  std::stable_sort(waiting_.begin(), waiting_.end(), [&](const Scored& a, const Scored& b) {
+  std::stable_sort(waiting_.begin(), waiting_.end(), [&](const Waiting& a, const Waiting& b) {
     const bool doubtful_a = !a.target->doubt.empty(), doubtful_b = !b.target->doubt.empty();
     return doubtful_a != doubtful_b ? doubtful_b : a.touches < b.touches;
   });
@@ -176,14 +172,12 @@ void CoveredSearch::ScreenWaiting() {
     std::vector<Scored> wave;
     std::vector<double> give_up_m;
     for (; next < waiting_.size() && wave.size() < kAtOnce; ++next) {
-      Scored& waiting = waiting_[next];
-      const std::optional<Grasp> grasp = input_.runnable(*waiting.target, waiting.motion);
+      Waiting& waiting = waiting_[next];
+      const std::optional<Grasp> grasp = input_.runnable(waiting.motion, waiting.grasps);
       if (!grasp) continue;
-      waiting.grasp_at_m = grasp->at_m;
-      waiting.grasp_cost = grasp->cost;
-      give_up_m.push_back(rival != nullptr ? WorthUpTo(waiting, *rival)
+      wave.push_back({waiting.target, std::move(waiting.motion), grasp->at_m, grasp->cost, {}, 0});
+      give_up_m.push_back(rival != nullptr ? WorthUpTo(wave.back(), *rival)
                                            : std::numeric_limits<double>::infinity());
-      wave.push_back(std::move(waiting));
     }
     const std::size_t first = scored_.size();
     std::move(wave.begin(), wave.end(), std::back_inserter(scored_));
@@ -231,13 +225,18 @@ bool CoveredSearch::IsRefined(const Scored& scored) const {
          scored.samples >= input_.config.samples;
 }
 
-// Whether it would promise to take its tube alone if it did in all samples to come.
+// To take its tube alone.
+bool CoveredSearch::Promises(const CandidateScore& score) const {
+  return ExtraProbability(score, input_.part) <= input_.config.accept_extra;
+}
+
+// Whether it would promise if it took its tube alone in all samples to come.
 bool CoveredSearch::MayPromise(const Scored& scored) const {
   CandidateScore score = scored.score;
   const double known = static_cast<double>(score.samples.size());
   score.samples.resize(std::max<std::size_t>(score.samples.size(), input_.config.samples));
   score.extra_probability *= known / static_cast<double>(score.samples.size());
-  return ExtraProbability(score, input_.part) <= input_.config.accept_extra;
+  return Promises(score);
 }
 
 double CoveredSearch::CostOf(const Scored& scored, const CandidateScore& score) const {
@@ -273,7 +272,7 @@ bool CoveredSearch::AnyPromising() const {
     return scored.target->doubt.empty() && IsRefined(scored) &&
            (scored.score.status == CandidateScore::Status::kDone ||
             scored.score.status == CandidateScore::Status::kPruned) &&
-           ExtraProbability(scored.score, input_.part) <= input_.config.accept_extra;
+           Promises(scored.score);
   });
 }
 

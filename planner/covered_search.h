@@ -29,7 +29,6 @@ struct Scored {
   const Target* target = nullptr;
   CandidateMotion motion;
   double grasp_at_m = 0.0, grasp_cost = 0.0;  ///< The best grasp with which the arm can run it.
-  int touches = 0;                            ///< Other tubes, by its swept volume.
   CandidateScore score;
   int samples = 0;  ///< That were asked for and not given up.
 };
@@ -38,9 +37,9 @@ struct Scored {
 /// displacement says, which counts as some samples. A motion that touches nothing: 0.
 double ExtraProbability(const CandidateScore& score, const Part& part);
 
-/// The best grasp with which the arm can run a motion; none: it reports why.
-using RunnableFunction =
-    std::function<std::optional<Grasp>(const Target& target, const CandidateMotion& motion)>;
+/// The first of some grasps with which the arm can run a motion; none: it reports why.
+using RunnableFunction = std::function<std::optional<Grasp>(const CandidateMotion& motion,
+                                                            const std::vector<Grasp>& grasps)>;
 
 /// What a search needs to know; all must outlive it.
 struct SearchInput {
@@ -75,7 +74,16 @@ class CoveredSearch {
   void Finish();
 
  private:
-  bool Exhausted() const;
+  /// To be rolled out for the first time.
+  struct Waiting {
+    const Target* target = nullptr;
+    CandidateMotion motion;
+    std::vector<Grasp> grasps;  ///< That suit it, cheapest first.
+    int touches = 0;            ///< Other tubes, by its swept volume.
+  };
+
+  bool Exhausted();
+  const Target* NextToSeparate();
   void ScoreMore();
   void AddSeparations();
   void AddMotions(const Target& target);
@@ -84,6 +92,7 @@ class CoveredSearch {
   void Refine();
   std::vector<Scored*> InOrder();
   bool IsRefined(const Scored& scored) const;
+  bool Promises(const CandidateScore& score) const;
   bool MayPromise(const Scored& scored) const;
   double CostOf(const Scored& scored, const CandidateScore& score) const;
   double WorthUpTo(const Scored& scored, const Scored& rival) const;
@@ -94,11 +103,11 @@ class CoveredSearch {
   const SearchInput input_;
   const std::vector<Target>& targets_;
   PlanResult& result_;
+  const double most_simulated_s_;
   std::size_t next_ = 0;
   std::vector<const Target*> separated_;
-  bool all_separated_ = false;
-  double simulated_s_ = 0.0, most_simulated_s_ = 0.0;
-  std::vector<Scored> waiting_;  ///< To be rolled out for the first time.
+  double simulated_s_ = 0.0;
+  std::vector<Waiting> waiting_;
   std::vector<Scored> scored_;
 };
 
