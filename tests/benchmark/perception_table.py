@@ -5,21 +5,13 @@ Rates carry Wilson 95 % intervals. `--worst N` also lists the N piles of each ce
 """
 import collections
 import json
-import math
 import sys
 
-
-def wilson(k, n, z=1.959964):
-    if n == 0:
-        return (0.0, 1.0)
-    p = k / n
-    centre = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    return (centre - half, centre + half)
+from intervals import wilson_interval
 
 
 def rate(k, n):
-    low, high = wilson(k, n)
+    low, high = wilson_interval(k, n)
     return f"{100 * k / n:.1f} [{100 * low:.1f}, {100 * high:.1f}] of {n}" if n else "-"
 
 

@@ -9,16 +9,9 @@ import math
 import os
 import random
 
+from intervals import wilson
+
 LIMIT_M = 0.02
-
-
-def wilson(k, n):
-    if n == 0:
-        return "-"
-    z, p = 1.959964, k / n
-    centre, half = p + z * z / (2 * n), z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    low, high = (centre - half) / (1 + z * z / n), (centre + half) / (1 + z * z / n)
-    return f"{k}/{n} = {100 * p:.1f} % [{100 * low:.1f}, {100 * high:.1f}]"
 
 
 def quantile(values, share):

@@ -3,23 +3,15 @@
 import collections
 import glob
 import json
-import math
 import os
 import statistics
 import sys
 
-
-def wilson(k, n, z=1.959964):
-    if n == 0:
-        return (0.0, 1.0)
-    p = k / n
-    centre = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    return (centre - half, centre + half)
+from intervals import wilson_interval
 
 
 def rate(k, n):
-    low, high = wilson(k, n)
+    low, high = wilson_interval(k, n)
     return f"{k}/{n} = {100 * k / max(1, n):.1f} % [{100 * low:.1f}, {100 * high:.1f}]"
 
 
