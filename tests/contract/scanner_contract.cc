@@ -8,14 +8,16 @@
 
 namespace tubetwin {
 
-ScanStatus AwaitScan(ScannerRig& rig) {
-  for (int i = 0; i < 100000; ++i) {
-    const ScanStatus status = rig.scanner().Status();
-    if (status != ScanStatus::kBusy) return status;
+void StepUntil(ScannerRig& rig, const std::function<bool()>& holds) {
+  for (int i = 0; !holds(); ++i) {
+    if (i == 100000) FAIL("what is waited for does not happen");
     rig.Step();
   }
-  FAIL("the scanner stays busy");
-  return ScanStatus::kBusy;
+}
+
+ScanStatus AwaitScan(ScannerRig& rig) {
+  StepUntil(rig, [&rig] { return rig.scanner().Status() != ScanStatus::kBusy; });
+  return rig.scanner().Status();
 }
 
 OrganizedCloud TakeScan(ScannerRig& rig) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "hw_bridge/cell/devices.h"
 
 namespace tubetwin {
@@ -16,6 +18,10 @@ class ScannerRig {
 /// Steps while the scanner is busy. Fails the test when that never ends (no result depends on how
 /// long it takes).
 ScanStatus AwaitScan(ScannerRig& rig);
+
+/// Steps until `holds()` returns true, as what threads behind the scanner do takes the time it
+/// takes. Fails the test when that never happens.
+void StepUntil(ScannerRig& rig, const std::function<bool()>& holds);
 
 /// Triggers, waits, takes; the test fails, with the scanner's reason, when that does.
 OrganizedCloud TakeScan(ScannerRig& rig);

@@ -19,8 +19,7 @@ TEST_CASE("Driver and emulated GigE Vision scanner keep the scanner's contract",
   GigeRig rig;
   CheckScannerContract(rig);
   CHECK(rig.device.triggers == 3);
-  for (int i = 0; i < 1000 && rig.emulator->answers() < 3; ++i) rig.Step();
-  CHECK(rig.emulator->answers() == 3);
+  StepUntil(rig, [&rig] { return rig.emulator->answers() == 3; });
 }
 
 TEST_CASE("A cloud crosses GigE Vision point by point, with the pose of the trigger",
@@ -47,8 +46,7 @@ TEST_CASE("Each GigE Vision scan is a new one, also for the next program that co
     rig.device.sees = SomeScan(k, GigeRig::kWidth, GigeRig::kHeight);
     CheckSamePoints(TakeScan(rig), rig.device.sees, kMillimetreRounding);
   }
-  for (int i = 0; i < 1000 && rig.emulator->answers() < 4; ++i) rig.Step();
-  CHECK(rig.emulator->answers() == 4);
+  StepUntil(rig, [&rig] { return rig.emulator->answers() == 4; });
 }
 
 TEST_CASE("A frame that lost packets is asked for once more", "[contract]") {
@@ -195,8 +193,7 @@ TEST_CASE("Driver and emulated GigE Vision scanner can end while a scan runs", "
   GigeRig rig;
   rig.device.takes = FromSeconds(1e6);
   REQUIRE(rig.driver->Trigger().accepted());
-  for (int i = 0; i < 300; ++i) rig.Step();
-  CHECK(rig.emulator->triggers() == 1);
+  StepUntil(rig, [&rig] { return rig.emulator->triggers() == 1; });
 }
 
 }  // namespace
