@@ -80,7 +80,10 @@ CoveredSearch::CoveredSearch(const SearchInput& input, const std::vector<Target>
       most_simulated_s_(input.config.max_simulated_s * (input.part.is_hose() ? 1.0 : kRigid) *
                         kHoses / std::max<std::size_t>(input.scene.tubes.size(), 1)) {}
 
-bool CoveredSearch::Exhausted() { return next_ == targets_.size() && NextToSeparate() == nullptr; }
+bool CoveredSearch::Exhausted() {
+  return next_ == targets_.size() && NextWithout(tipped_) == nullptr &&
+         NextWithout(separated_) == nullptr;
+}
 
 bool CoveredSearch::Next() {
   if (Exhausted()) return false;
@@ -110,23 +113,24 @@ void CoveredSearch::ScoreMore() {
   ScreenWaiting();
 }
 
-// The best tube whose long list has not been tried; null: none is to have it any more.
-const Target* CoveredSearch::NextToSeparate() {
-  if (static_cast<int>(separated_.size()) >= input_.config.separated) return nullptr;
+// The best tube that is not among those that had a list; null: none is to have it any more.
+const Target* CoveredSearch::NextWithout(const std::vector<const Target*>& had) {
+  if (static_cast<int>(had.size()) >= input_.config.separated) return nullptr;
   for (const Scored* scored : InOrder()) {
-    if (std::find(separated_.begin(), separated_.end(), scored->target) == separated_.end()) {
-      return scored->target;
-    }
+    if (std::find(had.begin(), had.end(), scored->target) == had.end()) return scored->target;
   }
   return nullptr;
 }
 
 void CoveredSearch::AddSeparations() {
-  const Target* next = NextToSeparate();
-  if (next == nullptr) return;
-  separated_.push_back(next);
-  AddMotions(*next, MakeTilts(input_.scene, *next->tube, input_.bin, input_.config));
-  AddMotions(*next, MakeSeparations(*next->tube, input_.bin, input_.config));
+  if (const Target* next = NextWithout(tipped_)) {
+    tipped_.push_back(next);
+    AddMotions(*next, MakeTilts(input_.scene, *next->tube, input_.bin, input_.config));
+    AddMotions(*next, MakeTips(*next->tube, input_.config));
+  } else if (const Target* last = NextWithout(separated_)) {
+    separated_.push_back(last);
+    AddMotions(*last, MakeSeparations(*last->tube, input_.bin, input_.config));
+  }
 }
 
 void CoveredSearch::AddMotions(const Target& target) {
@@ -173,6 +177,13 @@ void CoveredSearch::ScreenWaiting() {
     std::vector<double> give_up_m;
     for (; next < waiting_.size() && wave.size() < kAtOnce; ++next) {
       Waiting& waiting = waiting_[next];
+      const auto same = [&](const Scored& scored) {
+        return scored.target == waiting.target && scored.motion.name == waiting.motion.name;
+      };
+      if (std::any_of(wave.begin(), wave.end(), same) ||
+          std::any_of(scored_.begin(), scored_.end(), same)) {
+        continue;  // Another way of doing the same.
+      }
       const std::optional<Grasp> grasp = input_.runnable(waiting.motion, waiting.grasps);
       if (!grasp) continue;
       wave.push_back({waiting.target, std::move(waiting.motion), grasp->at_m, grasp->cost, {}, 0});

@@ -54,12 +54,13 @@ struct SearchInput {
 };
 
 /// Scores motions of covered tubes in the order of `targets`, in batches of about `max_candidates`:
-/// "up", escapes and ways out of every tube, then the long list of separations, a tube at a time,
-/// for the `separated` best. Each motion is rolled out once, those that touch the fewest tubes
-/// first, as far as it may still be among the best `refined`; then these with all samples, until
-/// the best of all has them: one lucky roll-out wins too easily among many. A best motion that
-/// cannot promise anything waits with its samples until all have been rolled out once. What the arm
-/// cannot run is not rolled out. Candidates, rejections and times go into the result.
+/// "up", escapes and ways out of every tube, then tilts and tips, a tube at a time, for the
+/// `separated` best, then the long list of separations likewise. Each motion is rolled out once,
+/// those that touch the fewest tubes first, as far as it may still be among the best `refined`;
+/// then these with all samples, until the best of all has them: one lucky roll-out wins too easily
+/// among many. A best motion that cannot promise anything waits with its samples until all have
+/// been rolled out once. What the arm cannot run is not rolled out. Candidates, rejections and
+/// times go into the result.
 class CoveredSearch {
  public:
   CoveredSearch(const SearchInput& input, const std::vector<Target>& targets, PlanResult& result);
@@ -83,7 +84,7 @@ class CoveredSearch {
   };
 
   bool Exhausted();
-  const Target* NextToSeparate();
+  const Target* NextWithout(const std::vector<const Target*>& had);
   void ScoreMore();
   void AddSeparations();
   void AddMotions(const Target& target);
@@ -105,7 +106,7 @@ class CoveredSearch {
   PlanResult& result_;
   const double most_simulated_s_;
   std::size_t next_ = 0;
-  std::vector<const Target*> separated_;
+  std::vector<const Target*> tipped_, separated_;
   double simulated_s_ = 0.0;
   std::vector<Waiting> waiting_;
   std::vector<Scored> scored_;

@@ -21,6 +21,10 @@ constexpr double kTouchCost_m = 0.10;  // A newly touched tube costs as much as 
 constexpr double kShakeLift_m = 0.10, kShake_m = 0.04;
 constexpr int kShakeStrokes = 3;
 constexpr double kSlow_m_s = 0.10;
+// A tip: high enough for half a hose to hang over the walls, steep enough for rubber to slide on
+// rubber.
+constexpr double kTipHeight_m = 0.30, kTip_deg = 75.0;
+constexpr std::array<double, 3> kTipYaws_deg = {0.0, 60.0, -60.0};
 constexpr double kHemisphere_m = 0.15;
 constexpr int kAzimuths = 8;
 constexpr double kHelixRadius_m = 0.05, kHelixRise_m = 0.25;
@@ -234,6 +238,35 @@ MotionSet MakeSeparations(const PerceivedTube& tube, const Bin& bin, const Plann
       keep(helix);
     }
   }
+  return set;
+}
+
+MotionSet MakeTips(const PerceivedTube& tube, const PlannerConfig& config) {
+  MotionSet set;
+  const Vector3 chord = ChordDirection(tube), across(-chord.y(), chord.x(), 0.0);
+  const auto add = [&](const std::string& name, const Vector3& axis, double yaw_deg) {
+    CandidateMotion tip = Named(tube, name, config);
+    tip.pivot_N = PointAt(tube.centerline_N, 0.5 * Length(tube.centerline_N));
+    tip.rotations_N = {Eigen::Quaterniond::Identity()};
+    const auto go = [&](const Vector3& to, const Eigen::Quaterniond& rotation) {
+      tip.waypoints_N.push_back(to);
+      tip.rotations_N.push_back(rotation);
+    };
+    go({0, 0, kTipHeight_m}, Eigen::Quaterniond::Identity());
+    // What slides off falls into the bin.
+    const Vector3 over_middle(-tip.pivot_N.x(), -tip.pivot_N.y(), kTipHeight_m);
+    const Eigen::Quaterniond yaw(Eigen::AngleAxisd(Radians(yaw_deg), Vector3::UnitZ()));
+    for (const double angle_deg : {0.0, kTip_deg, 0.0, -kTip_deg, 0.0}) {
+      go(over_middle, yaw * Eigen::AngleAxisd(Radians(angle_deg), axis));
+    }
+    if (config.lift_m > kTipHeight_m) {
+      GoUp(tip, config.lift_m - kTipHeight_m);
+      tip.rotations_N.push_back(yaw);
+    }
+    set.motions.push_back(std::move(tip));
+  };
+  for (const double yaw_deg : kTipYaws_deg) add("roll", chord, yaw_deg);
+  for (const double yaw_deg : kTipYaws_deg) add("pitch", across, yaw_deg);
   return set;
 }
 

@@ -29,4 +29,12 @@ MotionSet MakeWaysOut(const TubeScene& scene, const PerceivedTube& tube, const B
 /// tube.
 MotionSet MakeSeparations(const PerceivedTube& tube, const Bin& bin, const PlannerConfig& config);
 
+/// "roll" and "pitch", for tubes that others hang on however they are pulled: up by 30 cm, over the
+/// bin's middle, turned by 75 degrees about the tube's end-to-end chord (roll) or about the
+/// horizontal across it (pitch) and back, to either side, until what lies over the tube or hooks
+/// into it slides off into the bin; level again, up to `lift_m`. As the arm does not reach every
+/// such turn, each comes three times under its name, the tube turned about the vertical by 0, 60
+/// and -60 degrees on the way to the middle: one of them is enough.
+MotionSet MakeTips(const PerceivedTube& tube, const PlannerConfig& config);
+
 }  // namespace tubetwin

@@ -37,7 +37,7 @@ int IndexOf(const TubeScene& scene, int id) {
                                        " is not in the scene, which has tubes " + Join(known));
 }
 
-// The hand's three hinges are sure to follow so far.
+// The second of the hand's three hinges, about N's y axis, is sure to follow so far.
 void ValidateTurns(const CandidateMotion& candidate, const std::string& who) {
   if (!candidate.turns()) return;
   if (candidate.rotations_N.size() != candidate.waypoints_N.size()) {
@@ -47,10 +47,11 @@ void ValidateTurns(const CandidateMotion& candidate, const std::string& who) {
                                          " waypoints, one for each is needed");
   }
   for (const Eigen::Quaterniond& rotation : candidate.rotations_N) {
-    const double angle_deg = Degrees(rotation.angularDistance(Eigen::Quaterniond::Identity()));
-    if (!(angle_deg <= kMostTurn_deg)) {
+    const double angle_deg = Degrees(std::asin(std::clamp(rotation.matrix()(0, 2), -1.0, 1.0)));
+    if (!(std::abs(angle_deg) <= kMostTurn_deg)) {
       throw Error(ErrorKind::kBadData, who + "turned by " + Number(angle_deg) +
-                                           " degrees, at most " + Number(kMostTurn_deg));
+                                           " degrees about the bin's y axis, at most " +
+                                           Number(kMostTurn_deg));
     }
   }
 }

@@ -46,10 +46,10 @@ struct EvaluatorOptions {
 /// A roll-out ends early on a jam; when all others are at rest and the lifted tube is a radius over
 /// them or only rises from there on with none of them over it, where a tube that it carries up
 /// without slipping (1 cm/s, for 0.15 s) counts as part of it and is measured where it would
-/// arrive; or when the displacement exceeds give_up_m, the request's for this candidate or the
-/// configuration's if that is less: then it is a lower bound, and another tube came along that is
-/// over the rim just then. Tubes that lie still sleep until they are touched. `full`: none of the
-/// pruning and shortening. sim_s and wall_s are sums over the samples' roll-outs.
+/// arrive; or, where the motion does not turn, when the displacement exceeds give_up_m, the
+/// request's for this candidate or the configuration's if that is less: a lower bound then, another
+/// tube over the rim just then came along. Tubes that lie still sleep until touched. `full`: none
+/// of the pruning and shortening. sim_s and wall_s are sums over the samples' roll-outs.
 ///
 /// Settled scenes of the last pile are kept for the next question about it.
 /// The function may be called from several threads at once; results do not depend on the thread

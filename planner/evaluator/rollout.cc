@@ -249,6 +249,8 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
       rise_m = profile.At(profile.duration_s()).z() - p_NHand.z();
       break;
     }
+    // What a turn sheds counts less in the end than on the way.
+    if (motion.turns()) continue;
     if (Measure(scene, index, step * dt, model, data, lifted).displacement_m > config.give_up_m) {
       outcome.given_up = true;
       break;

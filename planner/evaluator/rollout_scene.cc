@@ -289,7 +289,11 @@ void RolloutScene::Command(const Vector3& p_NHand, const Matrix3& R_NHand, mjDat
                                         std::asin(std::clamp(R(0, 2), -1.0, 1.0)),
                                         std::atan2(-R(0, 1), R(0, 0))};
   for (int k = 0; k < 3; ++k) data.ctrl[first_actuator_ + k] = p_NHand[k];
-  for (int k = 0; k < 3; ++k) data.ctrl[first_actuator_ + 3 + k] = angles[k];
+  for (int k = 0; k < 3; ++k) {
+    // A hinge goes on beyond half a turn instead of the long way back.
+    mjtNum& hinge = data.ctrl[first_actuator_ + 3 + k];
+    hinge = angles[k] + 2.0 * kPi * std::round((hinge - angles[k]) / (2.0 * kPi));
+  }
 }
 
 double RolloutScene::Load(const mjModel& model, const mjData& data) const {

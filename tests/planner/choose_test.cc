@@ -1,6 +1,7 @@
 #include "planner/choose.h"
 
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -204,6 +205,34 @@ TEST_CASE("Where nothing promises a tube alone, all is asked once before anythin
   }
   CHECK(separated == std::set<int>{1, 3});
   CHECK(again);
+}
+
+TEST_CASE("Of the ways of one tip the first that the arm can run is rolled out", "[unit]") {
+  PlannerConfig config;
+  config.exclude_free = true;
+  FakeEvaluator evaluator;
+  evaluator.hopeless = true;
+  const auto turned_only = [](const Grasp&,
+                              const CandidateMotion& motion) -> std::optional<std::string> {
+    if (!motion.turns() ||
+        motion.rotations_N.back().angularDistance(Eigen::Quaterniond::Identity()) > Radians(30.0)) {
+      return std::nullopt;
+    }
+    return "the forearm is in the way";
+  };
+  Plan(Cross(), config, evaluator, turned_only);
+  std::map<std::string, int> rolled_out;
+  for (const EvaluationRequest& request : evaluator.requests) {
+    if (request.first_sample > 0) continue;
+    for (const CandidateMotion& motion : request.candidates) {
+      ++rolled_out[motion.name];
+      if (motion.name != "roll" && motion.name != "pitch") continue;
+      const Vector3 x = motion.rotations_N.back() * Vector3::UnitX();
+      CHECK(Degrees(std::atan2(x.y(), x.x())) == Approx(60.0));
+    }
+  }
+  CHECK(rolled_out["roll"] == 1);
+  CHECK(rolled_out["pitch"] == 1);
 }
 
 TEST_CASE("Little covered tubes are simulated first, the others only if need be", "[unit]") {

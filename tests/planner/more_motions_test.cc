@@ -1,6 +1,9 @@
 #include "planner/more_motions.h"
 
+#include <algorithm>
+#include <cmath>
 #include <set>
+#include <string>
 
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"
@@ -108,6 +111,38 @@ TEST_CASE("Separations have the published shapes and keep off the walls", "[unit
       CHECK(0.20 + kRadius + std::abs(p.x()) <= 0.23 - config.wall_safety_m + 1e-9);
     }
   }
+}
+
+TEST_CASE("A tip turns the tube steeply over the bin's middle, to either side", "[unit]") {
+  const TubeScene scene =
+      PerfectScene({StraightLine({0.1, -0.2, kRadius}, {0.1, 0.2, kRadius})}, kRadius);
+  const MotionSet set = MakeTips(scene.tubes[0], PlannerConfig{});
+  const Vector3 along = Vector3::UnitY(), pivot(0.1, 0.0, kRadius);
+  std::multiset<std::string> names;
+  for (const CandidateMotion& tip : set.motions) {
+    names.insert(tip.name);
+    REQUIRE(tip.rotations_N.size() == tip.waypoints_N.size());
+    CHECK(PoseAt(tip, 0).isApprox(RigidTransform::Identity()));
+    CHECK(tip.pivot_N.isApprox(pivot));
+    double most_deg = 0.0, least_deg = 0.0;
+    for (std::size_t k = 2; k < tip.waypoints_N.size(); ++k) {
+      CHECK((PoseAt(tip, k) * pivot).head<2>().norm() < 1e-12);
+      const Matrix3 R = PoseAt(tip, k).linear();
+      if (tip.name == "roll") {
+        CHECK(std::abs((R * along).z()) < 1e-12);  // Its chord stays level.
+        most_deg = std::max(most_deg, Degrees(std::acos(R(2, 2))));
+      } else {
+        const double rise_deg = Degrees(std::asin((R * along).z()));
+        most_deg = std::max(most_deg, rise_deg);
+        least_deg = std::min(least_deg, rise_deg);
+      }
+    }
+    CHECK(most_deg == Approx(75.0));
+    if (tip.name == "pitch") CHECK(least_deg == Approx(-75.0));
+    CHECK(PoseAt(tip, tip.waypoints_N.size() - 1).linear()(2, 2) == Approx(1.0));
+    CHECK(tip.waypoints_N.back().z() == Approx(0.40));
+  }
+  CHECK(names == std::multiset<std::string>{"pitch", "pitch", "pitch", "roll", "roll", "roll"});
 }
 
 TEST_CASE("Round a corner goes what would push others on every straight way", "[unit]") {

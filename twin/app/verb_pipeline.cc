@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -166,8 +167,12 @@ EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
     std::vector<CandidateMotion> motions = MakeMotions(scene, tube, pile.bin, planner).motions;
     for (const MotionSet& set :
          {MakeWaysOut(scene, tube, pile.bin, planner), MakeTilts(scene, tube, pile.bin, planner),
-          MakeSeparations(tube, pile.bin, planner)}) {
-      motions.insert(motions.end(), set.motions.begin(), set.motions.end());
+          MakeTips(tube, planner), MakeSeparations(tube, pile.bin, planner)}) {
+      for (const CandidateMotion& motion : set.motions) {
+        const auto same = [&](const CandidateMotion& m) { return m.name == motion.name; };
+        // Of what differs for the arm's sake only, the first.
+        if (std::none_of(motions.begin(), motions.end(), same)) motions.push_back(motion);
+      }
     }
     for (CandidateMotion& motion : motions) {
       const bool up = motion.name == "up", escape = motion.name.rfind("escape", 0) == 0;
