@@ -34,7 +34,8 @@ struct Scored {
 };
 
 /// Probability that another tube comes along: the samples' share drawn towards what the predicted
-/// displacement says, which counts as some samples. A motion that touches nothing: 0.
+/// displacement says (after a tip, which sheds what it displaced: towards a constant), which counts
+/// as some samples. A motion that touches nothing: 0.
 double ExtraProbability(const CandidateScore& score, const Part& part);
 
 /// The first of some grasps with which the arm can run a motion; none: it reports why.
@@ -92,6 +93,7 @@ class CoveredSearch {
   void ScreenWaiting();
   void Refine();
   std::vector<Scored*> InOrder();
+  static double ExpectedTime(const std::vector<Scored*>& motions, int samples);
   bool IsRefined(const Scored& scored) const;
   bool Promises(const CandidateScore& score) const;
   bool MayPromise(const Scored& scored) const;

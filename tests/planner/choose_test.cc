@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "hw_bridge/base/json.h"
+#include "models/part.h"
+#include "planner/covered_search.h"
 #include "planner/points.h"
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"
@@ -233,6 +235,22 @@ TEST_CASE("Of the ways of one tip the first that the arm can run is rolled out",
   }
   CHECK(rolled_out["roll"] == 1);
   CHECK(rolled_out["pitch"] == 1);
+}
+
+TEST_CASE("What a motion displaces foretells company, unless it tips the tube", "[unit]") {
+  const Part hose = LoadPart("hose_b");
+  CandidateScore score;
+  score.displacement_m = 0.3;
+  score.samples.assign(5, score.displacement_m);
+  CHECK(ExtraProbability(score, hose) == Approx(0.5 * 2.2 * 0.25));
+  score.rotations_N = {Eigen::Quaterniond::Identity(),
+                       Eigen::Quaterniond(Eigen::AngleAxisd(Radians(90.0), Vector3::UnitZ())),
+                       Eigen::Quaterniond(Eigen::AngleAxisd(Radians(20.0), Vector3::UnitX()))};
+  CHECK(ExtraProbability(score, hose) == Approx(0.5 * 2.2 * 0.25));
+  score.rotations_N.emplace_back(Eigen::AngleAxisd(Radians(-75.0), Vector3::UnitX()));
+  CHECK(ExtraProbability(score, hose) == Approx(0.5 * 0.15));
+  score.extra_probability = 1.0;
+  CHECK(ExtraProbability(score, hose) == Approx(0.5 + 0.5 * 0.15));
 }
 
 TEST_CASE("Little covered tubes are simulated first, the others only if need be", "[unit]") {
