@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <iterator>
 #include <limits>
 
@@ -20,10 +19,9 @@ namespace {
 // 17 % to 20 cm, 50 % to 30 cm, 71 % to 50 cm, 89 % beyond. It counts as so many samples.
 constexpr double kExtraPerMetre = 2.2, kQuiet_m = 0.05, kLeastExtra = 0.02, kMostExtra = 0.9;
 constexpr double kPriorSamples = 5.0;
-// After a tip it says nothing, as what came along on the way up has been shed: a constant then
-// (`campaign run tests/benchmark/covered.toml`: 8 of the first 8 tips that brought none along in
-// any sample brought none along in the cell).
-constexpr double kTipExtra = 0.15, kTipped_deg = 45.0;
+// After a tip it says nothing, as what came along on the way up has been shed: a constant then that
+// counts as one sample.
+constexpr double kTipExtra = 0.15;
 constexpr int kSamplesAtOnce = 2;  // A motion that is bad in one of them need not be tried further.
 // So many motions are rolled out before their scores limit the next ones, and so much of the
 // simulated time is kept from first roll-outs for the samples of the best.
@@ -35,12 +33,6 @@ constexpr double kRigid = 3.0;
 
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-bool Tips(const MotionWay& way) {
-  return std::any_of(way.rotations_N.begin(), way.rotations_N.end(), [](const auto& rotation) {
-    return (rotation * Vector3::UnitZ()).z() < std::cos(Radians(kTipped_deg));
-  });
 }
 
 // The score over the samples of both.
@@ -76,11 +68,11 @@ Rank RankOf(bool free, bool doubtful, const CandidateScore* score) {
 
 double ExtraProbability(const CandidateScore& score, const Part& part) {
   if (score.status == CandidateScore::Status::kPruned) return 0.0;
+  const bool tip = IsTip(score);
   const double expected =
-      Tips(score)
-          ? kTipExtra
+      tip ? kTipExtra
           : std::clamp(kExtraPerMetre * (score.displacement_m - kQuiet_m), kLeastExtra, kMostExtra);
-  const double weight = part.is_hose() ? kPriorSamples : 1.0;
+  const double weight = part.is_hose() && !tip ? kPriorSamples : 1.0;
   const double n = static_cast<double>(score.samples.size());
   return (n * score.extra_probability + weight * expected) / (n + weight);
 }
@@ -118,7 +110,7 @@ void CoveredSearch::Finish() {
 }
 
 void CoveredSearch::ScoreMore() {
-  if (next_ == targets_.size()) AddSeparations();
+  if (next_ == targets_.size()) AddLongList();
   while (next_ < targets_.size() &&
          static_cast<int>(waiting_.size()) < input_.config.max_candidates) {
     AddMotions(targets_[next_++]);
@@ -135,14 +127,15 @@ const Target* CoveredSearch::NextWithout(const std::vector<const Target*>& had) 
   return nullptr;
 }
 
-void CoveredSearch::AddSeparations() {
-  if (const Target* next = NextWithout(tipped_)) {
+void CoveredSearch::AddLongList() {
+  const Target* next = NextWithout(tipped_);
+  if (next != nullptr) {
     tipped_.push_back(next);
     AddMotions(*next, MakeTilts(input_.scene, *next->tube, input_.bin, input_.config));
-    AddMotions(*next, MakeTips(*next->tube, input_.config));
-  } else if (const Target* last = NextWithout(separated_)) {
-    separated_.push_back(last);
-    AddMotions(*last, MakeSeparations(*last->tube, input_.bin, input_.config));
+    AddMotions(*next, MakeTips(*next->tube, input_.bin, input_.config));
+  } else if ((next = NextWithout(separated_))) {
+    separated_.push_back(next);
+    AddMotions(*next, MakeSeparations(*next->tube, input_.bin, input_.config));
   }
 }
 
@@ -171,6 +164,13 @@ void CoveredSearch::AddMotions(const Target& target, MotionSet set) {
   }
 }
 
+// Whether a motion of that name is among them, for the same tube.
+bool CoveredSearch::HasOf(const Waiting& waiting, const std::vector<Scored>& among) {
+  return std::any_of(among.begin(), among.end(), [&](const Scored& scored) {
+    return scored.target == waiting.target && scored.motion.name == waiting.motion.name;
+  });
+}
+
 void CoveredSearch::ScreenWaiting() {
   const PlannerConfig& config = input_.config;
   std::stable_sort(waiting_.begin(), waiting_.end(), [&](const Waiting& a, const Waiting& b) {
@@ -190,18 +190,17 @@ void CoveredSearch::ScreenWaiting() {
     std::vector<double> give_up_m;
     for (; next < waiting_.size() && wave.size() < kAtOnce; ++next) {
       Waiting& waiting = waiting_[next];
-      const auto same = [&](const Scored& scored) {
-        return scored.target == waiting.target && scored.motion.name == waiting.motion.name;
-      };
-      if (std::any_of(wave.begin(), wave.end(), same) ||
-          std::any_of(scored_.begin(), scored_.end(), same)) {
-        continue;  // Another way of doing the same.
-      }
+      if (HasOf(waiting, wave) || HasOf(waiting, scored_)) continue;  // Another way of the same.
+      const bool tip = IsTip(waiting.motion);
+      if (tip && !wave.empty()) break;  // As long as a wave of others.
       const std::optional<Grasp> grasp = input_.runnable(waiting.motion, waiting.grasps);
       if (!grasp) continue;
       wave.push_back({waiting.target, std::move(waiting.motion), grasp->at_m, grasp->cost, {}, 0});
       give_up_m.push_back(rival != nullptr ? WorthUpTo(wave.back(), *rival)
                                            : std::numeric_limits<double>::infinity());
+      if (!tip) continue;
+      ++next;
+      break;
     }
     const std::size_t first = scored_.size();
     std::move(wave.begin(), wave.end(), std::back_inserter(scored_));
@@ -210,6 +209,7 @@ void CoveredSearch::ScreenWaiting() {
     AddSamples(asked, 1, give_up_m);
   }
   for (; next < waiting_.size(); ++next) {
+    if (HasOf(waiting_[next], scored_)) continue;
     const CandidateMotion& motion = waiting_[next].motion;
     result_.rejections.push_back({motion.tube, motion.name, "",
                                   "not rolled out: the " + Number(most_simulated_s_) +
@@ -230,11 +230,7 @@ void CoveredSearch::Refine() {
     // Those with as many samples as the best: one question for all.
     const int samples = order.front()->samples;
     std::erase_if(order, [&](const Scored* scored) { return scored->samples != samples; });
-    const int more = std::min(kSamplesAtOnce, input_.config.samples - samples);
-    while (order.size() > 1 && simulated_s_ + ExpectedTime(order, more) > most_simulated_s_) {
-      order.pop_back();  // The best first of all.
-    }
-    AddSamples(order, more);
+    AddSamples(order, std::min(kSamplesAtOnce, input_.config.samples - samples));
   }
 }
 
@@ -246,15 +242,6 @@ std::vector<Scored*> CoveredSearch::InOrder() {
     return rank_a != rank_b ? rank_a < rank_b : CostOf(*a, a->score) < CostOf(*b, b->score);
   });
   return order;
-}
-
-// Simulated seconds of so many more samples of each, by those that were rolled out.
-double CoveredSearch::ExpectedTime(const std::vector<Scored*>& motions, int samples) {
-  double expected_s = 0.0;
-  for (const Scored* scored : motions) {
-    expected_s += samples * scored->score.sim_s / std::max(1, scored->samples);
-  }
-  return expected_s;
 }
 
 bool CoveredSearch::IsRefined(const Scored& scored) const {

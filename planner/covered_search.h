@@ -85,15 +85,15 @@ class CoveredSearch {
   };
 
   bool Exhausted();
+  static bool HasOf(const Waiting& waiting, const std::vector<Scored>& among);
   const Target* NextWithout(const std::vector<const Target*>& had);
   void ScoreMore();
-  void AddSeparations();
+  void AddLongList();
   void AddMotions(const Target& target);
   void AddMotions(const Target& target, MotionSet set);
   void ScreenWaiting();
   void Refine();
   std::vector<Scored*> InOrder();
-  static double ExpectedTime(const std::vector<Scored*>& motions, int samples);
   bool IsRefined(const Scored& scored) const;
   bool Promises(const CandidateScore& score) const;
   bool MayPromise(const Scored& scored) const;

@@ -21,9 +21,10 @@ constexpr double kTouchCost_m = 0.10;  // A newly touched tube costs as much as 
 constexpr double kShakeLift_m = 0.10, kShake_m = 0.04;
 constexpr int kShakeStrokes = 3;
 constexpr double kSlow_m_s = 0.10;
-// A tip: high enough for half a hose to hang over the walls, steep enough for rubber to slide on
-// rubber.
-constexpr double kTipHeight_m = 0.30, kTip_deg = 75.0;
+// A tip: steep enough for rubber to slide on rubber, turned in one leg because the arm stands still
+// at waypoints; half the tube stays over the walls.
+constexpr double kTip_deg = 75.0, kOverWalls_m = 0.01;
+constexpr double kTipped_deg = 45.0;
 constexpr std::array<double, 3> kTipYaws_deg = {0.0, 60.0, -60.0};
 constexpr double kHemisphere_m = 0.15;
 constexpr int kAzimuths = 8;
@@ -241,26 +242,29 @@ MotionSet MakeSeparations(const PerceivedTube& tube, const Bin& bin, const Plann
   return set;
 }
 
-MotionSet MakeTips(const PerceivedTube& tube, const PlannerConfig& config) {
+MotionSet MakeTips(const PerceivedTube& tube, const Bin& bin, const PlannerConfig& config) {
   MotionSet set;
+  const double half_m = 0.5 * Length(tube.centerline_N);
+  const double height_m =
+      bin.wall_m() + half_m * std::sin(Radians(kTip_deg)) + tube.radius_m + kOverWalls_m;
   const Vector3 chord = ChordDirection(tube), across(-chord.y(), chord.x(), 0.0);
   const auto add = [&](const std::string& name, const Vector3& axis, double yaw_deg) {
     CandidateMotion tip = Named(tube, name, config);
-    tip.pivot_N = PointAt(tube.centerline_N, 0.5 * Length(tube.centerline_N));
+    tip.pivot_N = PointAt(tube.centerline_N, half_m);
     tip.rotations_N = {Eigen::Quaterniond::Identity()};
     const auto go = [&](const Vector3& to, const Eigen::Quaterniond& rotation) {
       tip.waypoints_N.push_back(to);
       tip.rotations_N.push_back(rotation);
     };
-    go({0, 0, kTipHeight_m}, Eigen::Quaterniond::Identity());
+    go({0, 0, height_m}, Eigen::Quaterniond::Identity());
     // What slides off falls into the bin.
-    const Vector3 over_middle(-tip.pivot_N.x(), -tip.pivot_N.y(), kTipHeight_m);
+    const Vector3 over_middle(-tip.pivot_N.x(), -tip.pivot_N.y(), height_m);
     const Eigen::Quaterniond yaw(Eigen::AngleAxisd(Radians(yaw_deg), Vector3::UnitZ()));
     for (const double angle_deg : {0.0, kTip_deg, 0.0, -kTip_deg, 0.0}) {
       go(over_middle, yaw * Eigen::AngleAxisd(Radians(angle_deg), axis));
     }
-    if (config.lift_m > kTipHeight_m) {
-      GoUp(tip, config.lift_m - kTipHeight_m);
+    if (config.lift_m > height_m) {
+      GoUp(tip, config.lift_m - height_m);
       tip.rotations_N.push_back(yaw);
     }
     set.motions.push_back(std::move(tip));
@@ -268,6 +272,15 @@ MotionSet MakeTips(const PerceivedTube& tube, const PlannerConfig& config) {
   for (const double yaw_deg : kTipYaws_deg) add("roll", chord, yaw_deg);
   for (const double yaw_deg : kTipYaws_deg) add("pitch", across, yaw_deg);
   return set;
+}
+
+bool IsTurnedOver(const Eigen::Quaterniond& rotation, double more_than_deg) {
+  return (rotation * Vector3::UnitZ()).z() < std::cos(Radians(more_than_deg));
+}
+
+bool IsTip(const MotionWay& way) {
+  return std::any_of(way.rotations_N.begin(), way.rotations_N.end(),
+                     [](const auto& rotation) { return IsTurnedOver(rotation, kTipped_deg); });
 }
 
 }  // namespace tubetwin

@@ -29,12 +29,18 @@ MotionSet MakeWaysOut(const TubeScene& scene, const PerceivedTube& tube, const B
 /// tube.
 MotionSet MakeSeparations(const PerceivedTube& tube, const Bin& bin, const PlannerConfig& config);
 
-/// "roll" and "pitch", for tubes that others hang on however they are pulled: up by 30 cm, over the
-/// bin's middle, turned by 75 degrees about the tube's end-to-end chord (roll) or about the
-/// horizontal across it (pitch) and back, to either side, until what lies over the tube or hooks
-/// into it slides off into the bin; level again, up to `lift_m`. As the arm does not reach every
-/// such turn, each comes three times under its name, the tube turned about the vertical by 0, 60
-/// and -60 degrees on the way to the middle: one of them is enough.
-MotionSet MakeTips(const PerceivedTube& tube, const PlannerConfig& config);
+/// "roll" and "pitch", for tubes that others hang on however they are pulled: up, over the bin's
+/// middle, turned by 75 degrees about the tube's end-to-end chord (roll) or about the horizontal
+/// across it (pitch) to one side and the other, until what lies over the tube or hooks into it has
+/// slid off into the bin; level again and up to `lift_m`. As high, even beyond `lift_m`, as the
+/// half that hangs down needs to stay over the walls. As the arm does not reach every such turn,
+/// each comes three times under its name, the tube turned about the vertical by 0, 60 and -60
+/// degrees on the way to the middle: one of them is enough.
+MotionSet MakeTips(const PerceivedTube& tube, const Bin& bin, const PlannerConfig& config);
+
+/// Whether a rotation turns the vertical by more than an angle.
+bool IsTurnedOver(const Eigen::Quaterniond& rotation, double more_than_deg = 1.0);
+/// Whether a tube is turned over so far, by more than 45 degrees, that others slide off it.
+bool IsTip(const MotionWay& way);
 
 }  // namespace tubetwin

@@ -42,8 +42,8 @@ void PlannerConfig::Visit(ConfigVisitor& v) {
           "more in proportion, of rigid tubes thrice as much): the best of the others is taken",
           max_simulated_s, {1, 1e6});
   v.Field("separated",
-          "so many covered tubes get the long list of motions (tilts, tips, hemisphere, helices) "
-          "where nothing else takes a tube alone",
+          "so many covered tubes get tilts and tips, and after that the long list of separations "
+          "(shake, hemisphere, helices), where nothing else takes a tube alone",
           separated, {0, 100});
   v.Field("max_displacement_m", "displacement from which on all motions are equally bad",
           max_displacement_m, {0.01, 100.0});

@@ -39,8 +39,8 @@ struct PlannerConfig {
   double min_confidence = 0.3;    ///< Tubes below come last.
   /// Not in the paper: more tubes are evaluated while another one comes along more often than this.
   double accept_extra = 0.15;
-  /// So many tubes get the long list of motions where none of the short one promises to take a tube
-  /// alone. 0: none, as in the paper.
+  /// So many tubes get tilts and tips, and after that the long list of separations, where nothing
+  /// else promises to take a tube alone. 0: none, as in the paper.
   int separated = 7;
   /// Roll-outs for one choice among seven hoses end after so much simulated time, part of which is
   /// kept for samples of the best motions; fewer tubes get more in proportion, rigid ones thrice.

@@ -327,7 +327,8 @@ void EvaluatorConfig::Visit(ConfigVisitor& v) {
   v.Field("hold_s", "waiting after the motion, before displacements are taken", hold_s,
           {0.0, 10.0});
   v.Field("give_up_m",
-          "a roll-out that has displaced the others by more ends, its cost a lower bound",
+          "a roll-out that has displaced the others by more ends, its cost a lower bound; tips, "
+          "which shed what they displace, go on",
           give_up_m, {0.01, 1000.0});
   v.Field("max_sim_s", "longest motion that is accepted", max_sim_s, {1.0, 600.0});
   v.Field("pose_error_m", "samples after the first: sigma of each tube's position, per axis",

@@ -38,7 +38,7 @@ struct EvaluatorOptions {
 /// A sample's displacement is the sum over the other tubes' centres of mass, each less what it
 /// creeps without any motion. The first sample is nominal; later ones draw friction, stiffness and
 /// position errors from the request's seed. displacement_m is the samples' mean, extra_probability
-/// the share of samples in which another tube ends over the rim (3 cm higher than before at least),
+/// the share of samples in which another tube ends over the rim (3 cm up at least) or off the bin,
 /// cost = displacement + 1 m * extra_probability (samples = 1: displacement alone, as in the paper)
 /// + 1 m when jammed, + 10 m when diverged. Status: diverged when any sample did, jammed when half
 /// of them or more did, pruned when the swept volumes of tube and fingers touch no other tube.
@@ -46,16 +46,16 @@ struct EvaluatorOptions {
 /// A roll-out ends early on a jam; when all others are at rest and the lifted tube is a radius over
 /// them or only rises from there on with none of them over it, where a tube that it carries up
 /// without slipping (1 cm/s, for 0.15 s) counts as part of it and is measured where it would
-/// arrive; or, where the motion does not turn, when the displacement exceeds give_up_m, the
-/// request's for this candidate or the configuration's if that is less: a lower bound then, another
-/// tube over the rim just then came along. Tubes that lie still sleep until touched. `full`: none
-/// of the pruning and shortening. sim_s and wall_s are sums over the samples' roll-outs.
+/// arrive; or, unless the motion is a tip, when the displacement exceeds give_up_m, the request's
+/// for this candidate or the configuration's if that is less: a lower bound then, another tube over
+/// the rim just then came along. Tubes that lie still sleep until touched. `full`: none of the
+/// pruning and shortening. sim_s and wall_s are sums over the samples' roll-outs.
 ///
 /// Settled scenes of the last pile are kept for the next question about it.
 /// The function may be called from several threads at once; results do not depend on the thread
 /// count nor on the order of candidates. Throws Error(kBadData) for a tube that is not in the
-/// scene, a motion without waypoints, longer than max_sim_s or not finite, a place outside the
-/// tube, and LogicError when grasp_at_m does not match the candidates.
+/// scene, a motion without waypoints, longer than max_sim_s, not finite or turned by more than 80
+/// degrees about N's y axis, a place outside the tube; LogicError for grasp_at_m of another size.
 EvaluateFunction MakeEvaluator(const EvaluatorOptions& options = {});
 
 }  // namespace tubetwin

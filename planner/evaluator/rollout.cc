@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hw_bridge/base/error.h"
+#include "planner/more_motions.h"
 #include "scenes/engine/engine_error.h"
 
 namespace tubetwin {
@@ -20,7 +21,8 @@ constexpr double kRides_m_s = 0.01;       // A tube that slips less on what lift
 constexpr int kRidingLooks = 3;           // when it is seen so often in a row.
 constexpr int kLookEvery = 10;            // Steps between looks for an early end.
 constexpr double kBeads_m = 0.01;         // Between points of an axis that are compared.
-constexpr double kLevel_m = 0.005;        // A tube that is lower by this is passed already.
+constexpr double kNeverDown_m = std::numeric_limits<double>::infinity();
+constexpr double kLevel_m = 0.005;  // A tube that is lower by this is passed already.
 
 struct HeightRange {
   double low = std::numeric_limits<double>::infinity();
@@ -86,9 +88,11 @@ class Lifted {
 
   /// All others are carried or at rest, and the load is a radius over those at rest or, where it
   /// only rises from here on, none of them is within a radius of its way.
-  bool TouchesNothingMore(bool only_rises, const mjModel& model, const mjData& data) const {
+  /// `lowest_m`: as low as it comes down again later.
+  bool TouchesNothingMore(bool only_rises, double lowest_m, const mjModel& model,
+                          const mjData& data) const {
     std::vector<Vector3> beads;
-    double low = std::numeric_limits<double>::infinity();
+    double low = lowest_m;
     for (int i = 0; i < Count(); ++i) {
       if (i == index_ || Carries(i)) {
         low = std::min(low, Heights(model, data, scene_.tubes()[i]).low);
@@ -141,9 +145,26 @@ Disturbance Measure(const RolloutScene& scene, int index, double sim_s, const mj
     const Vector3& before = scene.centres_N()[i];
     const double creep_m = scene.creep_m_s()[i] * sim_s;
     out.displacement_m += std::max(0.0, (centre - before).norm() - creep_m);
-    if (centre.z() > std::max(scene.wall_m(), before.z() + kRaised_m)) out.extra = true;
+    const Bin& bin = scene.bin();
+    if (centre.z() > std::max(bin.wall_m(), before.z() + kRaised_m)) out.extra = true;
+    if (std::abs(centre.x()) > bin.half_x_m() || std::abs(centre.y()) > bin.half_y_m()) {
+      out.extra = true;
+    }
   }
   return out;
+}
+
+// How low a tube comes where the way turns it, as far as it keeps its shape; infinite where the way
+// does not.
+double LowestTurned(const TubeBody& tube, const MotionWay& way) {
+  double low = kNeverDown_m;
+  for (std::size_t k = 0; k < way.rotations_N.size(); ++k) {
+    if (!IsTurnedOver(way.rotations_N[k])) continue;
+    for (const Vector3& p : Transformed(PoseAt(way, k), tube.initial().centerline_N)) {
+      low = std::min(low, p.z() - tube.initial().radius_m);
+    }
+  }
+  return low;
 }
 
 }  // namespace
@@ -209,6 +230,13 @@ double LegProfile::RisingFrom() const {
   return leg == 0 ? 0.0 : end_s_[leg - 1];
 }
 
+double LegProfile::TurnedOverUntil() const {
+  for (std::size_t leg = end_s_.size(); leg > 0 && !turns_.empty(); --leg) {
+    if (IsTurnedOver(turns_[leg])) return end_s_[leg - 1];
+  }
+  return 0.0;
+}
+
 RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
                        const CandidateMotion& motion, bool full, const EvaluatorConfig& config,
                        mjModel& model, mjData& data) {
@@ -226,6 +254,8 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
   const LegProfile profile(std::move(way_NHand), motion.speed_m_s, motion.rotations_N,
                            motion.turn_speed_rad_s);
   const double dt = model.opt.timestep, rising_from_s = profile.RisingFrom();
+  const double turned_until_s = profile.TurnedOverUntil();
+  const double lowest_turned_m = LowestTurned(scene.tubes()[index], motion);
   const int steps = static_cast<int>(std::ceil((profile.duration_s() + config.hold_s) / dt));
   double saturated_s = 0.0, rise_m = 0.0;
   Lifted lifted(scene, index);
@@ -245,12 +275,12 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
     const Vector3 p_NHand = profile.At(step * dt);
     const bool only_rises = step * dt >= rising_from_s;
     lifted.Look((p_NHand - profile.At((step - 1) * dt)) / dt, only_rises, model, data);
-    if (lifted.TouchesNothingMore(only_rises, model, data)) {
+    const double lowest_m = step * dt < turned_until_s ? lowest_turned_m : kNeverDown_m;
+    if (lifted.TouchesNothingMore(only_rises, lowest_m, model, data)) {
       rise_m = profile.At(profile.duration_s()).z() - p_NHand.z();
       break;
     }
-    // What a turn sheds counts less in the end than on the way.
-    if (motion.turns()) continue;
+    if (IsTip(motion)) continue;  // What it sheds counts less in the end than on the way.
     if (Measure(scene, index, step * dt, model, data, lifted).displacement_m > config.give_up_m) {
       outcome.given_up = true;
       break;

@@ -19,6 +19,8 @@ class LegProfile {
   Eigen::Quaterniond TurnAt(double time_s) const;
   /// From when on it only goes straight up; duration_s() when it never does.
   double RisingFrom() const;
+  /// From when on it is upright, whatever its yaw; 0 when it always is.
+  double TurnedOverUntil() const;
 
  private:
   struct Place {

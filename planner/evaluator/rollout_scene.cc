@@ -97,7 +97,7 @@ RolloutScene::RolloutScene(const TubeScene& scene, const Part& part, const Bin& 
 RolloutScene::RolloutScene(const std::vector<PileTube>& tubes, const Part& part, const Bin& bin,
                            double friction, double bending_stiffness_Nm2,
                            const EvaluatorConfig& config)
-    : wall_m_(bin.wall_m()) {
+    : bin_(bin) {
   EngineOptions engine;
   engine.timestep_s = config.timestep_s;
   engine.impratio = 10.0;

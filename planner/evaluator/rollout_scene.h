@@ -40,7 +40,7 @@ class RolloutScene {
   const std::vector<TubeBody>& tubes() const { return tubes_; }
   const std::vector<Vector3>& centres_N() const { return centres_N_; }  ///< As settled.
   const std::vector<double>& creep_m_s() const { return creep_m_s_; }   ///< Without any motion.
-  double wall_m() const { return wall_m_; }
+  const Bin& bin() const { return bin_; }
   double radius_m(int tube) const { return tubes_[tube].initial().radius_m; }
 
   /// Restores the settled state in `data` and welds the hand to tube `index` at a share of its arc
@@ -48,7 +48,8 @@ class RolloutScene {
   /// copy of model(). Returns where the hand is: origin on the tube's axis, z up, y closing.
   RigidTransform Grip(int index, double share, mjModel& model, mjData& data) const;
 
-  /// Targets of the hand's slides and hinges. Precondition: its z is less than 90 degrees off up.
+  /// Targets of the hand's slides and hinges, the hinges as near as may be to those commanded last.
+  /// Precondition: turned about N's y axis, the second hinge, by less than 90 degrees.
   void Command(const Vector3& p_NHand, const Matrix3& R_NHand, mjData& data) const;
   /// Largest of the hand's forces over its limit, 1 when saturated.
   double Load(const mjModel& model, const mjData& data) const;
@@ -62,7 +63,7 @@ class RolloutScene {
 
   MjModel model_;
   std::vector<TubeBody> tubes_;
-  double wall_m_ = 0.0;
+  Bin bin_;
   int first_axis_qpos_ = 0, first_actuator_ = 0, first_weld_ = 0, hand_ = 0;
   std::vector<int> weld_offset_;  ///< Index of every tube's first weld.
   StepStatus status_ = StepStatus::kOk;

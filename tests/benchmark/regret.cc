@@ -46,6 +46,14 @@ constexpr double kExtraCost_m = 1.0, kJamCost_m = 1.0, kDivergedCost_m = 10.0;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr int kMostSeedsPerPile = 20;
 
+// Ways of one tip have one name.
+bool SameWay(const MotionWay& a, const MotionWay& b) {
+  return a.waypoints_N == b.waypoints_N &&
+         std::equal(a.rotations_N.begin(), a.rotations_N.end(), b.rotations_N.begin(),
+                    b.rotations_N.end(),
+                    [](const auto& p, const auto& q) { return p.coeffs() == q.coeffs(); });
+}
+
 struct Options {
   std::string part = "hose_b", arrangement = "threaded", rows;
   int count = 7, piles = 1, from = 1, motions = 12, threads = 1;
@@ -267,7 +275,8 @@ class Trial {
       }
       const auto motion = std::find_if(
           plan.candidates.begin(), plan.candidates.end(), [&](const CandidateMotion& candidate) {
-            return candidate.tube == score.tube && candidate.name == score.motion;
+            return candidate.tube == score.tube && candidate.name == score.motion &&
+                   SameWay(candidate, score);
           });
       if (const std::optional<double> at_m = RunnableAt(*motion)) {
         others.push_back({*motion, *at_m, own_m});

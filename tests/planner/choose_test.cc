@@ -248,9 +248,9 @@ TEST_CASE("What a motion displaces foretells company, unless it tips the tube", 
                        Eigen::Quaterniond(Eigen::AngleAxisd(Radians(20.0), Vector3::UnitX()))};
   CHECK(ExtraProbability(score, hose) == Approx(0.5 * 2.2 * 0.25));
   score.rotations_N.emplace_back(Eigen::AngleAxisd(Radians(-75.0), Vector3::UnitX()));
-  CHECK(ExtraProbability(score, hose) == Approx(0.5 * 0.15));
+  CHECK(ExtraProbability(score, hose) == Approx(0.15 / 6));
   score.extra_probability = 1.0;
-  CHECK(ExtraProbability(score, hose) == Approx(0.5 + 0.5 * 0.15));
+  CHECK(ExtraProbability(score, hose) == Approx((5 + 0.15) / 6));
 }
 
 TEST_CASE("Little covered tubes are simulated first, the others only if need be", "[unit]") {

@@ -7,7 +7,6 @@
 #include "hw_bridge/base/json.h"
 #include "models/part.h"
 #include "planner/evaluator/rollout.h"
-#include "planner/more_motions.h"
 #include "planner/motions.h"
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"
@@ -201,37 +200,6 @@ TEST_CASE("A roll-out is given up once it has displaced the others by too much",
   CHECK_FALSE(full.lower_bound);
   CHECK(full.displacement_m > cut.displacement_m);
   CHECK(full.sim_s > 1.5 * cut.sim_s);
-}
-
-TEST_CASE("What rides along on the way up slides off a tube that is turned steeply", "[physics]") {
-  const TubeScene scene = Balanced();
-  EvaluatorOptions options;
-  options.config.give_up_m = 0.1;  // What it displaces on the way is no reason to give up.
-  for (const CandidateMotion& tip : MakeTips(scene.tubes[0], PlannerConfig{}).motions) {
-    if (tip.name != "pitch") continue;
-    const CandidateScore score =
-        MakeEvaluator(options)(scene, LoadPart("pvc_a"), Bin{}, Request({tip}, scene, 0.4))
-            .candidates[0];
-    CHECK(score.status == CandidateScore::Status::kDone);
-    CHECK_FALSE(score.lower_bound);
-    CHECK(score.extra_probability == 0.0);
-    CHECK(score.displacement_m < 0.4);
-  }
-}
-
-TEST_CASE("The hand turns on beyond half a turn", "[physics]") {
-  // Gripped at 80 degrees, turned by 160 more.
-  const Vector3 centre(0, 0, kRadius), half(0.035, 0.197, 0.0);
-  const TubeScene scene = PerfectScene({StraightLine(centre - half, centre + half)}, kRadius);
-  CandidateMotion turn = Motion(1, "turn", {{0, 0, 0}, {0, 0, 0.4}, {0, 0, 0.4}, {0, 0, 0.4}});
-  turn.pivot_N = centre;
-  for (const double yaw_deg : {0.0, 0.0, 80.0, 160.0}) {
-    turn.rotations_N.emplace_back(Eigen::AngleAxisd(Radians(yaw_deg), Vector3::UnitZ()));
-  }
-  // The long way back would keep the drive at its limit: a jam.
-  EvaluationRequest request = Request({turn}, scene);
-  request.full = true;
-  CHECK(Evaluate(scene, request).candidates[0].status == CandidateScore::Status::kDone);
 }
 
 TEST_CASE("A roll-out ends once another tube rides along for sure", "[physics]") {

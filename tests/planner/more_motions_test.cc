@@ -116,7 +116,7 @@ TEST_CASE("Separations have the published shapes and keep off the walls", "[unit
 TEST_CASE("A tip turns the tube steeply over the bin's middle, to either side", "[unit]") {
   const TubeScene scene =
       PerfectScene({StraightLine({0.1, -0.2, kRadius}, {0.1, 0.2, kRadius})}, kRadius);
-  const MotionSet set = MakeTips(scene.tubes[0], PlannerConfig{});
+  const MotionSet set = MakeTips(scene.tubes[0], Bin{}, PlannerConfig{});
   const Vector3 along = Vector3::UnitY(), pivot(0.1, 0.0, kRadius);
   std::multiset<std::string> names;
   for (const CandidateMotion& tip : set.motions) {
@@ -124,25 +124,35 @@ TEST_CASE("A tip turns the tube steeply over the bin's middle, to either side", 
     REQUIRE(tip.rotations_N.size() == tip.waypoints_N.size());
     CHECK(PoseAt(tip, 0).isApprox(RigidTransform::Identity()));
     CHECK(tip.pivot_N.isApprox(pivot));
+    // Half of it, the wall and a little more.
+    const double height_m = 0.09 + 0.2 * std::sin(Radians(75.0)) + kRadius + 0.01;
+    CHECK((tip.waypoints_N[1] - Vector3(0, 0, height_m)).norm() < 1e-12);
     double most_deg = 0.0, least_deg = 0.0;
     for (std::size_t k = 2; k < tip.waypoints_N.size(); ++k) {
       CHECK((PoseAt(tip, k) * pivot).head<2>().norm() < 1e-12);
       const Matrix3 R = PoseAt(tip, k).linear();
-      if (tip.name == "roll") {
-        CHECK(std::abs((R * along).z()) < 1e-12);  // Its chord stays level.
-        most_deg = std::max(most_deg, Degrees(std::acos(R(2, 2))));
-      } else {
-        const double rise_deg = Degrees(std::asin((R * along).z()));
-        most_deg = std::max(most_deg, rise_deg);
-        least_deg = std::min(least_deg, rise_deg);
-      }
+      const double along_deg = Degrees(std::asin((R * along).z()));
+      const double across_deg = Degrees(std::asin((R * Vector3::UnitX()).z()));
+      CHECK(std::abs(tip.name == "roll" ? along_deg : across_deg) < 1e-6);
+      const double turned_deg = tip.name == "roll" ? across_deg : along_deg;
+      most_deg = std::max(most_deg, turned_deg);
+      least_deg = std::min(least_deg, turned_deg);
     }
     CHECK(most_deg == Approx(75.0));
-    if (tip.name == "pitch") CHECK(least_deg == Approx(-75.0));
+    CHECK(least_deg == Approx(-75.0));
     CHECK(PoseAt(tip, tip.waypoints_N.size() - 1).linear()(2, 2) == Approx(1.0));
     CHECK(tip.waypoints_N.back().z() == Approx(0.40));
+    CHECK(IsTip(tip));
   }
   CHECK(names == std::multiset<std::string>{"pitch", "pitch", "pitch", "roll", "roll", "roll"});
+
+  PlannerConfig low;
+  low.lift_m = 0.1;
+  for (const CandidateMotion& tip : MakeTips(scene.tubes[0], Bin{}, low).motions) {
+    REQUIRE(tip.rotations_N.size() == tip.waypoints_N.size());
+    CHECK(tip.waypoints_N.back().z() > 0.3);
+  }
+  CHECK_FALSE(IsTip(MakeSeparations(scene.tubes[0], Bin{}, PlannerConfig{}).motions.front()));
 }
 
 TEST_CASE("Round a corner goes what would push others on every straight way", "[unit]") {

@@ -167,7 +167,7 @@ EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
     std::vector<CandidateMotion> motions = MakeMotions(scene, tube, pile.bin, planner).motions;
     for (const MotionSet& set :
          {MakeWaysOut(scene, tube, pile.bin, planner), MakeTilts(scene, tube, pile.bin, planner),
-          MakeTips(tube, planner), MakeSeparations(tube, pile.bin, planner)}) {
+          MakeTips(tube, pile.bin, planner), MakeSeparations(tube, pile.bin, planner)}) {
       for (const CandidateMotion& motion : set.motions) {
         const auto same = [&](const CandidateMotion& m) { return m.name == motion.name; };
         // Of what differs for the arm's sake only, the first.
