@@ -134,6 +134,11 @@ struct Disturbance {
   bool extra = false;
 };
 
+// Beyond the walls.
+bool IsOff(const Vector3& p_N, const Bin& bin) {
+  return std::abs(p_N.x()) > bin.half_x_m() || std::abs(p_N.y()) > bin.half_y_m();
+}
+
 // What the others have done in the first `sim_s` seconds, those that are carried `rise_m` higher.
 Disturbance Measure(const RolloutScene& scene, int index, double sim_s, const mjModel& model,
                     const mjData& data, const Lifted& lifted, double rise_m = 0.0) {
@@ -147,9 +152,7 @@ Disturbance Measure(const RolloutScene& scene, int index, double sim_s, const mj
     out.displacement_m += std::max(0.0, (centre - before).norm() - creep_m);
     const Bin& bin = scene.bin();
     if (centre.z() > std::max(bin.wall_m(), before.z() + kRaised_m)) out.extra = true;
-    if (std::abs(centre.x()) > bin.half_x_m() || std::abs(centre.y()) > bin.half_y_m()) {
-      out.extra = true;
-    }
+    if (IsOff(centre, bin) && !IsOff(before, bin)) out.extra = true;
   }
   return out;
 }

@@ -25,9 +25,9 @@ CandidateScore Score(const TubeScene& scene, const CandidateMotion& motion, bool
 }
 
 // Tube 2 lies balanced across tube 1.
-TubeScene Balanced(double y = 0.0) {
-  return PerfectScene({StraightLine({-0.25, y, kRadius}, {0.25, y, kRadius}),
-                       StraightLine({0.20, y - 0.25, 3 * kRadius}, {0.20, y + 0.25, 3 * kRadius})},
+TubeScene Balanced() {
+  return PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
+                       StraightLine({0.20, -0.25, 3 * kRadius}, {0.20, 0.25, 3 * kRadius})},
                       kRadius);
 }
 
@@ -63,11 +63,21 @@ TEST_CASE("What rides along on the way up slides off a tube that is turned steep
 }
 
 TEST_CASE("A tube that is thrown out of the bin came along", "[physics]") {
-  // Where the tube lies, beside the wall, instead of over the bin's middle.
-  const TubeScene scene = Balanced(0.25);
-  CandidateMotion tip = Turned(Vector3(0, 0.25, kRadius), Vector3::UnitX(), {0.0, -75.0, 0.0});
-  for (std::size_t k = 1; k < tip.waypoints_N.size(); ++k) tip.waypoints_N[k].y() = 0.10;
+  // Turned beside the wall instead of over the bin's middle, so that the other slides over it.
+  const TubeScene scene = Balanced();
+  CandidateMotion tip = Turned(Vector3(0, 0, kRadius), Vector3::UnitX(), {0.0, 0.0, -75.0, 0.0});
+  for (std::size_t k = 2; k < tip.waypoints_N.size(); ++k) tip.waypoints_N[k].y() = 0.22;
   CHECK(Score(scene, tip, true).extra_probability == 1.0);
+
+  // One that hung over the wall before and stays there did not.
+  const double over_wall = Bin{}.wall_m() + kRadius;
+  const TubeScene beside =
+      PerfectScene({StraightLine({-0.25, 0.1, kRadius}, {-0.05, 0.1, kRadius}),
+                    StraightLine({0.20, 0.20, kRadius}, {0.20, 0.42, over_wall + 0.02})},
+                   kRadius);
+  CandidateMotion up = Turned(Vector3::Zero(), Vector3::UnitX(), {0.0});
+  up.waypoints_N = {Vector3::Zero(), {0, 0, 0.4}};
+  CHECK(Score(beside, up, true).extra_probability == 0.0);
 }
 
 TEST_CASE("A roll-out does not end before a turn that comes down on others", "[physics]") {
