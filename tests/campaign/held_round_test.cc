@@ -28,6 +28,7 @@ Scenario Tangled() {
   scenario.pile.arrangement = "threaded";
   scenario.planner.exclude_free = true;
   scenario.planner.samples = 1;
+  scenario.planner.separated = 0;  // A tip would take one alone.
   return scenario;
 }
 
