@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -364,17 +363,14 @@ TEST_CASE("Plain PLY is in metres; millimetres must be said, never guessed", "[u
   CHECK_FALSE(cloud.organized());
 }
 
-TEST_CASE("A full-resolution cloud is read in well under a second", "[unit]") {
+TEST_CASE("A full-resolution cloud is read as it was written", "[unit]") {
   const Folder folder;
-  WritePcd(SomeCloud(2064, 1544, true, true), folder.File("a.pcd"));
-  const auto begin = std::chrono::steady_clock::now();
+  const OrganizedCloud written = SomeCloud(2064, 1544, true, true);
+  WritePcd(written, folder.File("a.pcd"));
   const OrganizedCloud cloud = ReadPcd(folder.File("a.pcd"));
-  const double wall_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   CHECK(cloud.size() == 2064u * 1544u);
-  WARN("read 3.19 M points in " << wall_s << " s");
-  constexpr double kLoadedMachine_s = 1.0;  // Measured 0.1 s; tests share their cores.
-  CHECK(wall_s < kLoadedMachine_s);
+  CHECK(cloud.label == written.label);
+  CHECK(cloud.p_SP[cloud.size() - 2] == written.p_SP[cloud.size() - 2]);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "hw_bridge/base/cloud.h"
 #include "hw_bridge/base/random.h"
 #include "models/arm.h"
 #include "models/layout.h"
@@ -10,6 +11,7 @@
 #include "planner/evaluator/evaluator.h"
 #include "planner/motions.h"
 #include "scenes/pile.h"
+#include "tests/support/temporary_folder.h"
 #include "twin/cell/twin_cell.h"
 
 namespace tubetwin {
@@ -76,6 +78,19 @@ void BM_Scan(benchmark::State& state) {
   }
 }
 BENCHMARK(BM_Scan)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// A PCD file of one view of 2064 x 1544 to a cloud.
+void BM_ReadCloud(benchmark::State& state) {
+  ScanSettings settings;
+  settings.width = settings.spec.full_width;
+  settings.height = settings.spec.full_height;
+  const RigidTransform X_BS = DefaultScanPoses(SevenTubes().bin)[1];
+  const TemporaryFolder folder;
+  WritePcd(CastScan(Geometry(), X_BS, settings, RandomStream(1, 0, "bench"), Parallelism::All()),
+           folder / "view.pcd");
+  for (auto _ : state) benchmark::DoNotOptimize(ReadPcd(folder / "view.pcd"));
+}
+BENCHMARK(BM_ReadCloud)->Unit(benchmark::kMillisecond);
 
 /// Eight views of 1032 x 772 to tubes and crossings. All cores.
 void BM_Perceive(benchmark::State& state) {

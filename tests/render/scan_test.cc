@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 
 #include "hw_bridge/base/polyline.h"
 #include "tests/render/scan_fixture.h"
@@ -155,8 +154,7 @@ TEST_CASE("An empty world gives an empty scan, the scanner's pose is respected",
   }
 }
 
-TEST_CASE("A full-resolution scan with every effect takes less than a second of processor time",
-          "[render]") {
+TEST_CASE("A full-resolution scan with every effect sees most of a full bin", "[render]") {
   ScanGeometry geometry;
   geometry.boxes.push_back(Plate(0.515));
   geometry.boxes.push_back({Translation(0.3, 0, 0.47), Vector3(0.01, 0.4, 0.045), 1, 0.6f});
@@ -174,15 +172,9 @@ TEST_CASE("A full-resolution scan with every effect takes less than a second of 
   settings.width = 2064;
   settings.height = 1544;
   settings.labels = true;
-  double least_s = 1e9;
-  for (int n = 0; n < 3; ++n) {
-    const std::clock_t begin = std::clock();  // Of all threads; waiting for a core does not count.
-    const OrganizedCloud cloud = Cast(geometry, settings, 2);
-    least_s = std::min(least_s, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
-    CHECK(CountValid(cloud) > 2000000);
-  }
-  WARN("2064 x 1544: " << least_s << " s of processor time (least of 3)");
-  CHECK(least_s < 1.0);  // Measured 0.33.
+  const OrganizedCloud cloud = Cast(geometry, settings, 2);
+  CHECK(CountValid(cloud) > 2000000);
+  CHECK(cloud.label.size() == 2064u * 1544u);
 }
 
 }  // namespace
