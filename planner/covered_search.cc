@@ -188,19 +188,19 @@ void CoveredSearch::ScreenWaiting() {
             : nullptr;
     std::vector<Scored> wave;
     std::vector<double> give_up_m;
-    for (; next < waiting_.size() && wave.size() < kAtOnce; ++next) {
+    // A tip takes as long as a wave of others: it is one.
+    const auto full = [&] {
+      return wave.size() == kAtOnce || (!wave.empty() && IsTip(wave.back().motion));
+    };
+    for (; next < waiting_.size() && !full(); ++next) {
       Waiting& waiting = waiting_[next];
       if (HasOf(waiting, wave) || HasOf(waiting, scored_)) continue;  // Another way of the same.
-      const bool tip = IsTip(waiting.motion);
-      if (tip && !wave.empty()) break;  // As long as a wave of others.
+      if (!wave.empty() && IsTip(waiting.motion)) break;
       const std::optional<Grasp> grasp = input_.runnable(waiting.motion, waiting.grasps);
       if (!grasp) continue;
       wave.push_back({waiting.target, std::move(waiting.motion), grasp->at_m, grasp->cost, {}, 0});
       give_up_m.push_back(rival != nullptr ? WorthUpTo(wave.back(), *rival)
                                            : std::numeric_limits<double>::infinity());
-      if (!tip) continue;
-      ++next;
-      break;
     }
     const std::size_t first = scored_.size();
     std::move(wave.begin(), wave.end(), std::back_inserter(scored_));

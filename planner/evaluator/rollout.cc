@@ -259,6 +259,7 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
   const double dt = model.opt.timestep, rising_from_s = profile.RisingFrom();
   const double turned_until_s = profile.TurnedOverUntil();
   const double lowest_turned_m = LowestTurned(scene.tubes()[index], motion);
+  const bool may_give_up = !IsTip(motion);  // What a tip sheds counts less in the end.
   const int steps = static_cast<int>(std::ceil((profile.duration_s() + config.hold_s) / dt));
   double saturated_s = 0.0, rise_m = 0.0;
   Lifted lifted(scene, index);
@@ -283,8 +284,8 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
       rise_m = profile.At(profile.duration_s()).z() - p_NHand.z();
       break;
     }
-    if (IsTip(motion)) continue;  // What it sheds counts less in the end than on the way.
-    if (Measure(scene, index, step * dt, model, data, lifted).displacement_m > config.give_up_m) {
+    if (may_give_up &&
+        Measure(scene, index, step * dt, model, data, lifted).displacement_m > config.give_up_m) {
       outcome.given_up = true;
       break;
     }
