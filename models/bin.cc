@@ -2,9 +2,9 @@
 
 #include <charconv>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <array>
 
-#include "hw_bridge/base/config.h"
-#include "hw_bridge/base/frames.h"
-#include "hw_bridge/base/json_fwd.h"
+#include "models/base/config/config.h"
+#include "models/base/frames.h"
+#include "models/base/json_fwd.h"
 
 namespace tubetwin {
 

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <array>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "models/gripper_spec.h"
 
 namespace tubetwin {

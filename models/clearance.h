@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/joint.h"
-#include "hw_bridge/base/polyline.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/base/joint.h"
+#include "models/base/polyline.h"
 #include "models/bin.h"
 #include "models/layout.h"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/json.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {

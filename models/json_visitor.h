@@ -2,8 +2,8 @@
 
 #include <functional>
 
-#include "hw_bridge/base/config.h"
-#include "hw_bridge/base/json_fwd.h"
+#include "models/base/config/config.h"
+#include "models/base/json_fwd.h"
 
 namespace tubetwin {
 

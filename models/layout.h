@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "hw_bridge/base/frames.h"
+#include "models/base/frames.h"
 #include "models/bin.h"
 
 namespace tubetwin {

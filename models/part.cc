@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/frames.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/frames.h"
+#include "models/base/json.h"
+#include "models/base/text.h"
 #include "models/embedded.h"
 #include "models/json_visitor.h"
 

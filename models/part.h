@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/config.h"
-#include "hw_bridge/base/json_fwd.h"
-#include "hw_bridge/base/polyline.h"
+#include "models/base/config/config.h"
+#include "models/base/json_fwd.h"
+#include "models/base/polyline.h"
 
 namespace tubetwin {
 

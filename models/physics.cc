@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {

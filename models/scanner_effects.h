@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hw_bridge/base/config.h"
+#include "models/base/config/config.h"
 
 namespace tubetwin {
 

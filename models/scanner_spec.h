@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hw_bridge/base/frames.h"
+#include "models/base/frames.h"
 
 namespace tubetwin {
 

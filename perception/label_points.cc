@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "perception/axis_points.h"
+#include "perception/fragment/axis_points.h"
 
 namespace tubetwin {
 namespace {

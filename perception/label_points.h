@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/parallel.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/parallel.h"
 #include "models/bin.h"
-#include "perception/tube_scene.h"
+#include "perception/scene/tube_scene.h"
 
 namespace tubetwin {
 

@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/config.h"
-#include "hw_bridge/base/parallel.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/config/config.h"
+#include "models/base/parallel.h"
 #include "models/bin.h"
 #include "models/part.h"
 #include "perception/leao2020/config.h"
-#include "perception/tube_scene.h"
+#include "perception/scene/tube_scene.h"
 
 namespace tubetwin {
 

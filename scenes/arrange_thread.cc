@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/arrange.h"
 
 namespace tubetwin::arrange {

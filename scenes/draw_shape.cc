@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/pile.h"
 
 namespace tubetwin {

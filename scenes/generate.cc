@@ -2,8 +2,8 @@
 #include <cmath>
 #include <optional>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 #include "scenes/arrange.h"
 #include "scenes/coverage.h"
 #include "scenes/pile_scene.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/polyline.h"
+#include "models/base/polyline.h"
 #include "models/bin.h"
 #include "models/part.h"
 #include "models/physics.h"

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <set>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 #include "scenes/pile.h"
 
 namespace tubetwin {

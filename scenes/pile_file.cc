@@ -2,9 +2,9 @@
 #include <cmath>
 #include <limits>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "scenes/pile.h"
 #include "scenes/pile_text.h"
 

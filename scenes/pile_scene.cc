@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 #include "scenes/bin_body.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/engine/stepping.h"

@@ -7,7 +7,7 @@
 #include <map>
 #include <string_view>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

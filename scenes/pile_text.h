@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/polyline.h"
+#include "models/base/polyline.h"
 
 namespace tubetwin {
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/engine/stepping.h"
 #include "scenes/pile.h"
 #include "scenes/pile_scene.h"

@@ -5,7 +5,7 @@
 #include <complex>
 #include <limits>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/engine/mj_handles.h"
 
 namespace tubetwin {

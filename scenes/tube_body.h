@@ -6,7 +6,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "hw_bridge/base/polyline.h"
+#include "models/base/polyline.h"
 #include "models/physics.h"
 #include "scenes/pile.h"
 

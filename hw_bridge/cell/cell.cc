@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "hw_bridge/base/error.h"
 #include "hw_bridge/cell/watch.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <variant>
 
-#include "hw_bridge/base/joint.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/base/joint.h"
 
 namespace tubetwin {
 

@@ -4,11 +4,11 @@
 #include <optional>
 #include <string>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/joint.h"
-#include "hw_bridge/base/time.h"
-#include "hw_bridge/base/wrench.h"
 #include "hw_bridge/cell/checked_trajectory.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/joint.h"
+#include "models/base/time.h"
+#include "models/base/wrench.h"
 
 namespace tubetwin {
 

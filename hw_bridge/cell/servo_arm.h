@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "hw_bridge/base/joint.h"
-#include "hw_bridge/base/time.h"
+#include "models/base/joint.h"
+#include "models/base/time.h"
 
 namespace tubetwin {
 

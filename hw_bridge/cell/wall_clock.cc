@@ -4,7 +4,7 @@
 #include <cmath>
 #include <thread>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "hw_bridge/base/error.h"
 #include "hw_bridge/codecs/little_endian.h"
+#include "models/base/error.h"
 
 namespace tubetwin::hses {
 namespace {

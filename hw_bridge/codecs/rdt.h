@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "hw_bridge/base/wrench.h"
 #include "hw_bridge/codecs/decode_error.h"
+#include "models/base/wrench.h"
 
 namespace tubetwin {
 

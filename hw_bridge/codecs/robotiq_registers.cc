@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

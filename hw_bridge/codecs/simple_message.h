@@ -7,8 +7,8 @@
 #include <string_view>
 #include <variant>
 
-#include "hw_bridge/base/joint.h"
 #include "hw_bridge/codecs/decode_error.h"
+#include "models/base/joint.h"
 
 /// simple_message as MotoROS 1 speaks it on a YRC1000 over TCP: motion 50240, state 50241, I/O
 /// 50242; little-endian words of 32 bits. One control group.

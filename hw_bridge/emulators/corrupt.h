@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 
 namespace tubetwin {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hw_bridge/base/time.h"
+#include "models/base/time.h"
 
 namespace tubetwin {
 

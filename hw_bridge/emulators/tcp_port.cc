@@ -6,7 +6,7 @@
 #include <list>
 #include <utility>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "hw_bridge/base/time.h"
+#include "models/base/time.h"
 
 namespace asio {
 class io_context;

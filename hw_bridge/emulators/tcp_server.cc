@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "hw_bridge/base/error.h"
 #include "hw_bridge/emulators/corrupt.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "hw_bridge/base/time.h"
 #include "hw_bridge/emulators/link_faults.h"
+#include "models/base/time.h"
 
 namespace asio {
 class io_context;

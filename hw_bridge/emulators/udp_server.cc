@@ -5,8 +5,8 @@
 #include <deque>
 #include <utility>
 
-#include "hw_bridge/base/error.h"
 #include "hw_bridge/emulators/corrupt.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "hw_bridge/base/config.h"
+#include "models/base/config/config.h"
 
 namespace tubetwin {
 

@@ -13,8 +13,8 @@
 #include <pcl/segmentation/region_growing.h>
 #include <pcl/segmentation/sac_segmentation.h>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/error.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

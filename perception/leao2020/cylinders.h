@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "hw_bridge/base/frames.h"
-#include "hw_bridge/base/parallel.h"
+#include "models/base/frames.h"
+#include "models/base/parallel.h"
 #include "perception/leao2020/config.h"
 
 namespace tubetwin {

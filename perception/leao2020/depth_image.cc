@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "perception/view_raster.h"
+#include "perception/view/view_raster.h"
 
 namespace tubetwin {
 

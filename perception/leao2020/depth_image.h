@@ -1,7 +1,7 @@
 #pragma once
 
-#include "hw_bridge/base/cloud.h"
-#include "perception/view_image.h"
+#include "models/base/cloud/cloud.h"
+#include "perception/view/view_image.h"
 
 namespace tubetwin {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "perception/leao2020/cylinders.h"
-#include "perception/view_image.h"
+#include "perception/view/view_image.h"
 
 namespace tubetwin {
 

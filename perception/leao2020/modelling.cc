@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/random.h"
-#include "perception/axis_points.h"
-#include "perception/bin_state.h"
-#include "perception/coverage.h"
+#include "models/base/error.h"
+#include "models/base/random.h"
+#include "models/base/step_timer.h"
+#include "perception/fragment/axis_points.h"
 #include "perception/leao2020/depth_image.h"
 #include "perception/leao2020/tubes.h"
-#include "perception/step_timer.h"
-#include "perception/unexplained.h"
+#include "perception/scene/bin_state.h"
+#include "perception/scene/coverage.h"
+#include "perception/scene/unexplained.h"
 
 namespace tubetwin {
 namespace {

@@ -2,12 +2,12 @@
 
 #include <vector>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/parallel.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/parallel.h"
 #include "models/bin.h"
 #include "models/part.h"
 #include "perception/leao2020/config.h"
-#include "perception/tube_scene.h"
+#include "perception/scene/tube_scene.h"
 
 namespace tubetwin {
 

@@ -4,7 +4,7 @@
 
 #include "models/part.h"
 #include "perception/leao2020/join.h"
-#include "perception/tube_scene.h"
+#include "perception/scene/tube_scene.h"
 
 namespace tubetwin {
 

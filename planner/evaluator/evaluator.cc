@@ -8,12 +8,12 @@
 #include <mutex>
 #include <numeric>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 #include "planner/evaluator/rollout.h"
 #include "planner/evaluator/rollout_scene.h"
-#include "planner/removal_order.h"
-#include "planner/sweep.h"
+#include "planner/scene_query/removal_order.h"
+#include "planner/scene_query/sweep.h"
 
 namespace tubetwin {
 namespace {

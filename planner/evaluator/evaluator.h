@@ -1,8 +1,8 @@
 #pragma once
 
-#include "hw_bridge/base/config.h"
-#include "hw_bridge/base/parallel.h"
-#include "planner/motion_types.h"
+#include "models/base/config/config.h"
+#include "models/base/parallel.h"
+#include "planner/extraction/motion_types.h"
 
 namespace tubetwin {
 

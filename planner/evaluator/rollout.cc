@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "hw_bridge/base/error.h"
-#include "planner/more_motions.h"
+#include "models/base/error.h"
+#include "planner/extraction/more_motions.h"
 #include "scenes/engine/engine_error.h"
 
 namespace tubetwin {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/error.h"
+#include "models/base/random.h"
 #include "models/gripper_spec.h"
-#include "planner/gripper_boxes.h"
-#include "planner/sweep.h"
+#include "planner/grasp/gripper_boxes.h"
+#include "planner/scene_query/sweep.h"
 #include "scenes/bin_body.h"
 #include "scenes/engine/engine_error.h"
 

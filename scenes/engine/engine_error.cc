@@ -7,7 +7,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

@@ -1,6 +1,6 @@
 #include "scenes/engine/mj_handles.h"
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/engine/engine_error.h"
 
 namespace tubetwin {

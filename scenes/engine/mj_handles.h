@@ -5,7 +5,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "hw_bridge/base/frames.h"
+#include "models/base/frames.h"
 
 namespace tubetwin {
 

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "models/part.h"
 #include "scenes/pile.h"
 #include "tests/support/catch.h"

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
 

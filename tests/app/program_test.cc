@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_folder.h"

@@ -4,9 +4,9 @@
 #include <fstream>
 #include <memory>
 
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/cell/cell_recording.h"
+#include "hw_bridge/recording/cell_recording.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
 #include "tests/support/temporary_folder.h"

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <map>
 
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/files.h"
+#include "models/base/text.h"
 #include "tests/architecture/rules.h"
 #include "tests/architecture/tree.h"
 #include "tests/support/catch.h"
@@ -42,7 +42,7 @@ int Run(const std::string& command, const std::string& log) {
 }  // namespace
 
 TEST_CASE("the sources of every room are found") {
-  for (const char* room : {"hw_bridge/base", "models", "hw_bridge/cell", "scenes", "perception",
+  for (const char* room : {"models/base", "models", "hw_bridge/cell", "scenes", "perception",
                            "planner", "twin/render", "twin/cell"}) {
     CHECK(std::any_of(Sources().begin(), Sources().end(),
                       [&](const SourceFile& f) { return RoomOf(f.path) == room; }));
@@ -218,8 +218,8 @@ TEST_CASE("each rule finds what breaks it") {
   CHECK(CheckTruthStaysInCampaign(One("twin/campaign/a.cc", "#include \"twin/cell/truth.h\"\n"))
             .empty());
   CHECK(CheckTruthStaysInCampaign(
-            {ParseSource("twin/campaign/scoring.h", "#include \"twin/cell/truth.h\"\n"),
-             ParseSource("twin/app/a.cc", "#include \"twin/campaign/scoring.h\"\n")})
+            {ParseSource("twin/round/scoring.h", "#include \"twin/cell/truth.h\"\n"),
+             ParseSource("twin/app/a.cc", "#include \"twin/round/scoring.h\"\n")})
             .size() == 1);
   std::string lines;
   for (int i = 0; i < 401; ++i) lines += "\n";

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "hw_bridge/base/files.h"
+#include "models/base/files.h"
 
 namespace tubetwin::architecture {
 namespace {

@@ -7,7 +7,7 @@ namespace tubetwin::architecture {
 
 /// One source file of the tree with what the rules ask about it.
 struct SourceFile {
-  std::string path;                   ///< From the top of the tree: "models/arm.h".
+  std::string path;                   ///< From the top of the tree: "models/arm/arm.h".
   std::vector<std::string> lines;     ///< Without line ends.
   std::vector<std::string> quoted;    ///< #include "..."
   std::vector<std::string> brackets;  ///< #include <...>

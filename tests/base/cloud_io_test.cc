@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

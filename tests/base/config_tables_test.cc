@@ -1,5 +1,5 @@
-#include "hw_bridge/base/config.h"
-#include "hw_bridge/base/error.h"
+#include "models/base/config/config.h"
+#include "models/base/error.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

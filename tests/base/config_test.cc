@@ -1,11 +1,11 @@
-#include "hw_bridge/base/config.h"
+#include "models/base/config/config.h"
 
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,4 +1,4 @@
-#include "hw_bridge/base/files.h"
+#include "models/base/files.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

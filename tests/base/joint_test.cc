@@ -1,8 +1,8 @@
-#include "hw_bridge/base/joint.h"
+#include "models/base/joint.h"
 
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,9 +1,9 @@
-#include "hw_bridge/base/json.h"
+#include "models/base/json.h"
 
 #include <filesystem>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,10 +1,10 @@
-#include "hw_bridge/base/parallel.h"
+#include "models/base/parallel.h"
 
 #include <atomic>
 #include <stdexcept>
 #include <vector>
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

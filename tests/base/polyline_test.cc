@@ -1,6 +1,6 @@
-#include "hw_bridge/base/polyline.h"
+#include "models/base/polyline.h"
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,4 +1,4 @@
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 
 #include <cmath>
 #include <set>

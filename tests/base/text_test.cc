@@ -1,10 +1,10 @@
-#include "hw_bridge/base/text.h"
+#include "models/base/text.h"
 
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

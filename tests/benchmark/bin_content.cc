@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "tests/support/bin_cases.h"
-#include "twin/campaign/wilson.h"
+#include "twin/statistics/wilson.h"
 
 namespace tubetwin {
 namespace {

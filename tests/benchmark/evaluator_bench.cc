@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/parallel.h"
+#include "models/base/parallel.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/evaluator/rollout.h"
-#include "planner/more_motions.h"
+#include "planner/extraction/more_motions.h"
 #include "scenes/pile.h"
 #include "tests/benchmark/ode_lift.h"
 

@@ -20,21 +20,21 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "models/layout.h"
 #include "perception/perceive.h"
-#include "planner/arm_feasibility.h"
-#include "planner/choose.h"
-#include "planner/covered_search.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/evaluator/rollout.h"
-#include "planner/grasps.h"
-#include "planner/motions.h"
-#include "planner/points.h"
+#include "planner/extraction/motions.h"
+#include "planner/grasp/grasps.h"
+#include "planner/pick/arm_feasibility.h"
+#include "planner/pick/pick_planner.h"
+#include "planner/pick/rollout_scheduler.h"
+#include "planner/scene_query/voxel_downsample.h"
 #include "scenes/pile.h"
-#include "twin/render/ray_scene.h"
+#include "twin/render/scan/ray_scene.h"
 
 namespace tubetwin {
 namespace {

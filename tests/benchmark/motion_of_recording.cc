@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/cell/cell_recording.h"
-#include "models/arm.h"
+#include "hw_bridge/recording/cell_recording.h"
+#include "models/arm/arm.h"
+#include "models/base/json.h"
 
 namespace tubetwin {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "hw_bridge/base/frames.h"
-#include "hw_bridge/base/polyline.h"
-#include "planner/sweep.h"
+#include "models/base/frames.h"
+#include "models/base/polyline.h"
+#include "planner/scene_query/sweep.h"
 
 namespace tubetwin {
 namespace {

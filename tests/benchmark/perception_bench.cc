@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/parallel.h"
-#include "perception/metrics.h"
+#include "models/base/error.h"
+#include "models/base/parallel.h"
 #include "perception/perceive.h"
 #include "scenes/pile.h"
 #include "tests/benchmark/plain_pcl.h"
 #include "tests/support/toy_scanner.h"
+#include "tests/support/tube_metrics.h"
 
 namespace tubetwin {
 namespace {

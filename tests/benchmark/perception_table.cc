@@ -18,15 +18,15 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "models/layout.h"
 #include "models/physics.h"
-#include "perception/graph_metrics.h"
 #include "perception/perceive.h"
 #include "scenes/pile.h"
-#include "twin/render/ray_scene.h"
+#include "tests/support/graph_metrics.h"
+#include "twin/render/scan/ray_scene.h"
 
 namespace tubetwin {
 namespace {

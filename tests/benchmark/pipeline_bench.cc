@@ -3,13 +3,13 @@
 
 #include <benchmark/benchmark.h>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/random.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/random.h"
 #include "models/layout.h"
 #include "perception/perceive.h"
 #include "planner/evaluator/evaluator.h"
-#include "planner/motions.h"
+#include "planner/extraction/motions.h"
 #include "scenes/pile.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/cell/twin_cell.h"

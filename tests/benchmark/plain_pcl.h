@@ -1,9 +1,9 @@
 #pragma once
 
-#include "hw_bridge/base/cloud.h"
+#include "models/base/cloud/cloud.h"
 #include "models/bin.h"
 #include "models/part.h"
-#include "perception/tube_scene.h"
+#include "perception/scene/tube_scene.h"
 
 namespace tubetwin {
 

@@ -24,16 +24,16 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/config.h"
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/base/config/config.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "models/layout.h"
-#include "planner/arm_feasibility.h"
-#include "planner/choose.h"
-#include "planner/covered_search.h"
 #include "planner/evaluator/evaluator.h"
-#include "planner/grasps.h"
+#include "planner/grasp/grasps.h"
+#include "planner/pick/arm_feasibility.h"
+#include "planner/pick/pick_planner.h"
+#include "planner/pick/rollout_scheduler.h"
 #include "scenes/pile.h"
 #include "tests/support/tube_scenes.h"
 

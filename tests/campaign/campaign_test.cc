@@ -1,12 +1,12 @@
 #include "twin/campaign/campaign.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/json.h"
 
 #include <fstream>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-#include "twin/campaign/kept_rounds.h"
+#include "twin/campaign/campaign_round.h"
 
 namespace tubetwin {
 namespace {

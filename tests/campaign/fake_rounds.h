@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "models/base/random.h"
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/merge.h"
 #include "twin/campaign/run_campaign.h"

@@ -1,18 +1,18 @@
 #include "twin/campaign/merge.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/json.h"
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
 #include "tests/campaign/fake_rounds.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-#include "twin/campaign/attempt_facts.h"
 #include "twin/campaign/campaign_summary.h"
-#include "twin/campaign/compare.h"
+#include "twin/round/attempt_facts.h"
+#include "twin/study/compare.h"
 
 namespace tubetwin {
 namespace {

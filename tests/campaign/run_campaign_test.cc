@@ -1,7 +1,7 @@
 // The runner with rounds that take no time: what becomes of rounds, stops and limits.
 
 #include "twin/campaign/run_campaign.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/json.h"
 
 #include <filesystem>
 #include <fstream>

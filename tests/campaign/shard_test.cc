@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

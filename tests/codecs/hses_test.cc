@@ -2,8 +2,8 @@
 
 #include <cstring>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/error.h"
+#include "models/base/random.h"
 #include "tests/codecs/hex.h"
 #include "tests/support/catch.h"
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/codecs/hex.h"
 #include "tests/support/catch.h"
 

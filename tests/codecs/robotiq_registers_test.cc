@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/codecs/rtu_line.h"
 #include "tests/support/catch.h"
 

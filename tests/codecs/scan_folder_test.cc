@@ -1,6 +1,6 @@
 #include "hw_bridge/codecs/scan_folder.h"
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

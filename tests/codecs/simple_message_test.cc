@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/codecs/hex.h"
 #include "tests/support/catch.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/contract/advance.h"
 #include "tests/support/catch.h"
 

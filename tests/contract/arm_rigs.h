@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hw_bridge/drivers/yaskawa/yaskawa_arm.h"
-#include "hw_bridge/emulators/arm_emulator.h"
+#include "hw_bridge/emulators/yaskawa/arm_emulator.h"
 #include "tests/contract/arm_contract.h"
 #include "tests/drivers/served_arm.h"
 #include "tests/twin_cell/cell_fixture.h"

@@ -1,7 +1,7 @@
 // The devices' contracts on the twin, on the recorder before it, and on the replay of that.
 
-#include "hw_bridge/cell/cell_recorder.h"
-#include "hw_bridge/cell/replay_cell.h"
+#include "hw_bridge/recording/cell_recorder.h"
+#include "hw_bridge/recording/replay_cell.h"
 #include "tests/contract/device_contract.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"

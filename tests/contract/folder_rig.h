@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "hw_bridge/drivers/photoneo/folder_scanner.h"
-#include "hw_bridge/emulators/scanner_folder_emulator.h"
+#include "hw_bridge/emulators/photoneo/scanner_folder_emulator.h"
 #include "tests/contract/scanner_contract.h"
 #include "tests/support/fake_scanner.h"
 #include "tests/support/temporary_folder.h"

@@ -5,9 +5,9 @@
 #include <optional>
 #include <thread>
 
-#include "hw_bridge/base/error.h"
 #include "hw_bridge/drivers/photoneo/gige_scanner.h"
-#include "hw_bridge/emulators/scanner_gige_emulator.h"
+#include "hw_bridge/emulators/photoneo/scanner_gige_emulator.h"
+#include "models/base/error.h"
 #include "tests/contract/scanner_contract.h"
 #include "tests/support/fake_scanner.h"
 

@@ -1,9 +1,9 @@
 #include "tests/contract/gripper_contract.h"
 
-#include "hw_bridge/cell/cell_recorder.h"
-#include "hw_bridge/cell/replay_cell.h"
 #include "hw_bridge/drivers/robotiq/robotiq_gripper.h"
-#include "hw_bridge/emulators/gripper_emulator.h"
+#include "hw_bridge/emulators/robotiq/gripper_emulator.h"
+#include "hw_bridge/recording/cell_recorder.h"
+#include "hw_bridge/recording/replay_cell.h"
 #include "tests/contract/bench_rigs.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"

@@ -1,8 +1,8 @@
 #include <filesystem>
 #include <set>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
 #include "tests/contract/folder_rig.h"
 #include "tests/support/catch.h"
 

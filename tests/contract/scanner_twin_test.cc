@@ -3,7 +3,7 @@
 #include <mutex>
 #include <thread>
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "tests/contract/folder_rig.h"
 #include "tests/contract/gige_rig.h"
 #include "tests/support/catch.h"

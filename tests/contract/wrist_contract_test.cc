@@ -1,9 +1,9 @@
 #include "tests/contract/wrist_contract.h"
 
-#include "hw_bridge/cell/cell_recorder.h"
-#include "hw_bridge/cell/replay_cell.h"
 #include "hw_bridge/drivers/ati/netft_sensor.h"
-#include "hw_bridge/emulators/wrist_emulator.h"
+#include "hw_bridge/emulators/ati/wrist_emulator.h"
+#include "hw_bridge/recording/cell_recorder.h"
+#include "hw_bridge/recording/replay_cell.h"
 #include "tests/contract/bench_rigs.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <thread>
 
-#include "hw_bridge/base/config.h"
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
 #include "hw_bridge/drivers/photoneo/scan_check.h"
+#include "models/base/config/config.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
 #include "tests/support/catch.h"
 #include "tests/support/fake_scanner.h"
 #include "tests/support/temporary_folder.h"

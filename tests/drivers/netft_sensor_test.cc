@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "hw_bridge/base/error.h"
 #include "hw_bridge/drivers/ati/http_get.h"
+#include "models/base/error.h"
 #include "tests/drivers/served.h"
 #include "tests/support/catch.h"
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <memory>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/drivers/served.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"

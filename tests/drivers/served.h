@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "hw_bridge/cell/devices.h"
-#include "hw_bridge/emulators/gripper_emulator.h"
-#include "hw_bridge/emulators/wrist_emulator.h"
+#include "hw_bridge/emulators/ati/wrist_emulator.h"
+#include "hw_bridge/emulators/robotiq/gripper_emulator.h"
 #include "tests/support/moving_fingers.h"
 
 namespace tubetwin {

@@ -7,7 +7,7 @@
 
 #include "hw_bridge/cell/wall_clock.h"
 #include "hw_bridge/drivers/yaskawa/yaskawa_config.h"
-#include "hw_bridge/emulators/arm_emulator.h"
+#include "hw_bridge/emulators/yaskawa/arm_emulator.h"
 #include "tests/emulators/fake_servo_arm.h"
 
 namespace tubetwin::test {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "hw_bridge/emulators/increment_queue.h"
+#include "hw_bridge/emulators/yaskawa/increment_queue.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin::test {

@@ -3,7 +3,7 @@
 #include <asio.hpp>
 #include <chrono>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/drivers/arm_bench.h"
 
 namespace tubetwin::test {

@@ -1,7 +1,7 @@
 // The emulated controller's state, I/O and supervision ports, and what can befall its links.
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/error.h"
+#include "models/base/random.h"
 #include "tests/codecs/hex.h"
 #include "tests/emulators/arm_rig.h"
 #include "tests/support/catch.h"

@@ -3,7 +3,7 @@
 #include <asio.hpp>
 #include <string>
 
-#include "hw_bridge/emulators/arm_emulator.h"
+#include "hw_bridge/emulators/yaskawa/arm_emulator.h"
 #include "tests/emulators/fake_servo_arm.h"
 
 namespace tubetwin::test {

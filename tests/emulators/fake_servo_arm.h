@@ -1,7 +1,7 @@
 #pragma once
 
 #include "hw_bridge/cell/servo_arm.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
 
 namespace tubetwin::test {
 

@@ -1,4 +1,4 @@
-#include "hw_bridge/emulators/gripper_controller.h"
+#include "hw_bridge/emulators/robotiq/gripper_controller.h"
 
 #include "tests/support/catch.h"
 #include "tests/support/moving_fingers.h"

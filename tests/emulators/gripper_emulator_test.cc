@@ -1,4 +1,4 @@
-#include "hw_bridge/emulators/gripper_emulator.h"
+#include "hw_bridge/emulators/robotiq/gripper_emulator.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/error.h"
+#include "models/base/random.h"
 #include "tests/codecs/hex.h"
 #include "tests/support/catch.h"
 #include "tests/support/moving_fingers.h"

@@ -1,11 +1,11 @@
-#include "hw_bridge/emulators/wrist_emulator.h"
+#include "hw_bridge/emulators/ati/wrist_emulator.h"
 
 #include <asio.hpp>
 #include <chrono>
 #include <thread>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/error.h"
+#include "models/base/random.h"
 #include "tests/codecs/hex.h"
 #include "tests/support/catch.h"
 

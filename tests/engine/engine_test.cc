@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/engine/mj_handles.h"
 #include "scenes/engine/stepping.h"

@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/files.h"
+#include "models/base/random.h"
 #include "tests/fuzz/cloud_target.h"
 
 namespace tubetwin {

@@ -9,10 +9,10 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/random.h"
 
 namespace tubetwin {
 namespace {

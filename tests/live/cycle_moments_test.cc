@@ -1,6 +1,6 @@
 #include "twin/live/cycle_moments.h"
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

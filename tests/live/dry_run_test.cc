@@ -1,7 +1,7 @@
 #include "twin/live/dry_run.h"
 
-#include "models/arm.h"
-#include "tests/cell/restless_cell.h"
+#include "models/arm/arm.h"
+#include "tests/recording/restless_cell.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

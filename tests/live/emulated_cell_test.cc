@@ -4,13 +4,13 @@
 #include <optional>
 #include <thread>
 
-#include "hw_bridge/base/error.h"
 #include "hw_bridge/drivers/photoneo/scanner_link.h"
-#include "hw_bridge/emulators/scanner_gige_emulator.h"
+#include "hw_bridge/emulators/photoneo/scanner_gige_emulator.h"
+#include "models/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-#include "twin/campaign/twin_setup.h"
 #include "twin/live/fault_script.h"
+#include "twin/round/twin_setup.h"
 
 namespace tubetwin {
 namespace {

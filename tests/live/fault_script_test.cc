@@ -1,7 +1,7 @@
 #include "twin/live/fault_script.h"
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

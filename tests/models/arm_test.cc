@@ -1,9 +1,9 @@
-#include "models/arm.h"
+#include "models/arm/arm.h"
 
 #include <kdl/chain.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,4 +1,4 @@
-#include "models/bin_mesh.h"
+#include "models/mesh/bin_mesh.h"
 
 #include "tests/support/catch.h"
 #include "tests/support/tube_mesh.h"

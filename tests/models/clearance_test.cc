@@ -1,6 +1,6 @@
 #include "models/clearance.h"
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "models/gripper_spec.h"
 #include "tests/support/catch.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "models/gripper_spec.h"
 #include "models/scanner_spec.h"
 #include "tests/support/catch.h"

@@ -1,10 +1,10 @@
-#include "models/mesh.h"
+#include "models/mesh/mesh.h"
 
 #include <fstream>
 #include <functional>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/error.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tube_mesh.h"

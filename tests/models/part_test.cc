@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "models/bin.h"
 #include "models/physics.h"
 #include "tests/support/catch.h"

@@ -1,6 +1,6 @@
 #include "models/scanner_spec.h"
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "models/clearance.h"
 #include "models/layout.h"
 #include "tests/support/catch.h"

@@ -1,4 +1,4 @@
-#include "perception/axis_points.h"
+#include "perception/fragment/axis_points.h"
 
 #include <limits>
 

@@ -1,8 +1,8 @@
-#include "perception/floor_pose.h"
+#include "perception/view/floor_pose.h"
 
 #include <algorithm>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/toy_scanner.h"
 

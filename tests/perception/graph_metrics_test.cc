@@ -1,4 +1,4 @@
-#include "perception/graph_metrics.h"
+#include "tests/support/graph_metrics.h"
 
 #include "tests/support/catch.h"
 

@@ -1,12 +1,12 @@
-#include "perception/joining.h"
+#include "perception/joining/joining.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
-#include "hw_bridge/base/random.h"
-#include "perception/chains.h"
+#include "models/base/random.h"
+#include "perception/joining/chains.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,11 +1,11 @@
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "perception/leao2020/modelling.h"
 #include "perception/leao2020/tubes.h"
-#include "perception/metrics.h"
 #include "perception/perceive.h"
 #include "tests/support/catch.h"
 #include "tests/support/toy_scanner.h"
+#include "tests/support/tube_metrics.h"
 
 namespace tubetwin {
 namespace {

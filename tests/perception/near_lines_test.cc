@@ -1,6 +1,6 @@
-#include "perception/near_lines.h"
+#include "perception/scene/near_lines.h"
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,10 +1,10 @@
 #include "perception/perceive.h"
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "perception/metrics.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "tests/support/catch.h"
 #include "tests/support/toy_scanner.h"
+#include "tests/support/tube_metrics.h"
 
 namespace tubetwin {
 namespace {

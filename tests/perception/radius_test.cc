@@ -1,4 +1,4 @@
-#include "perception/radius.h"
+#include "perception/fragment/radius.h"
 
 #include "perception/perceive.h"
 #include "tests/support/catch.h"

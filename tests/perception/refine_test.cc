@@ -1,6 +1,6 @@
-#include "perception/refine.h"
+#include "perception/fragment/refine.h"
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,9 +1,9 @@
-#include "perception/registration.h"
+#include "perception/view/registration.h"
 
-#include "perception/metrics.h"
 #include "perception/perceive.h"
 #include "tests/support/catch.h"
 #include "tests/support/toy_scanner.h"
+#include "tests/support/tube_metrics.h"
 
 namespace tubetwin {
 namespace {

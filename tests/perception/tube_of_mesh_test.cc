@@ -1,4 +1,4 @@
-#include "perception/tube_of_mesh.h"
+#include "perception/part_import/tube_of_mesh.h"
 
 #include "models/part.h"
 #include "scenes/pile.h"

@@ -1,7 +1,7 @@
-#include "perception/tube_scene.h"
+#include "perception/scene/tube_scene.h"
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,10 +1,10 @@
-#include "perception/voxel_grid.h"
+#include "perception/view/voxel_grid.h"
 
 #include <map>
 #include <tuple>
 
-#include "hw_bridge/base/frames.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/frames.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,4 +1,4 @@
-#include "planner/detection.h"
+#include "planner/grasp/detection.h"
 
 #include "tests/support/catch.h"
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "models/part.h"
 #include "planner/evaluator/rollout.h"
-#include "planner/motions.h"
+#include "planner/extraction/motions.h"
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"
 

@@ -1,9 +1,9 @@
-#include "planner/grasps.h"
+#include "planner/grasp/grasps.h"
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "models/gripper_spec.h"
-#include "planner/box_distance.h"
-#include "planner/gripper_boxes.h"
+#include "planner/grasp/gripper_boxes.h"
+#include "planner/scene_query/box_distance.h"
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"
 

@@ -1,4 +1,4 @@
-#include "planner/held_part.h"
+#include "planner/grasp/held_part.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "planner/more_motions.h"
+#include "planner/extraction/more_motions.h"
 
 #include <algorithm>
 #include <cmath>

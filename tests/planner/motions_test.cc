@@ -1,4 +1,4 @@
-#include "planner/motions.h"
+#include "planner/extraction/motions.h"
 
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"

@@ -1,6 +1,6 @@
-#include "planner/placement.h"
+#include "planner/grasp/placement.h"
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

@@ -1,4 +1,4 @@
-#include "planner/removal_order.h"
+#include "planner/scene_query/removal_order.h"
 
 #include "tests/support/catch.h"
 

@@ -1,4 +1,4 @@
-#include "planner/sweep.h"
+#include "planner/scene_query/sweep.h"
 
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"

@@ -1,4 +1,4 @@
-#include "planner/tilt_motions.h"
+#include "planner/extraction/tilt_motions.h"
 
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"

@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "models/part.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/evaluator/rollout.h"
-#include "planner/more_motions.h"
+#include "planner/extraction/more_motions.h"
 #include "tests/support/catch.h"
 #include "tests/support/tube_scenes.h"
 

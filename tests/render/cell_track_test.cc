@@ -1,7 +1,7 @@
 #include "twin/render/cell_track.h"
 
-#include "hw_bridge/base/error.h"
-#include "tests/campaign/report_fixture.h"
+#include "models/base/error.h"
+#include "tests/report/report_fixture.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

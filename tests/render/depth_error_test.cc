@@ -4,7 +4,7 @@
 
 #include "tests/render/scan_fixture.h"
 #include "tests/support/catch.h"
-#include "twin/render/depth_error.h"
+#include "twin/render/scan/depth_error.h"
 
 namespace tubetwin::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "hw_bridge/base/polyline.h"
+#include "models/base/polyline.h"
 #include "tests/render/scan_fixture.h"
 #include "tests/support/catch.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "hw_bridge/base/cloud.h"
-#include "twin/render/scan_geometry.h"
+#include "models/base/cloud/cloud.h"
+#include "twin/render/scan/scan_geometry.h"
 
 namespace tubetwin::test {
 

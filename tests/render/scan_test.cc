@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "hw_bridge/base/polyline.h"
+#include "models/base/polyline.h"
 #include "tests/render/scan_fixture.h"
 #include "tests/support/catch.h"
 

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "hw_bridge/base/error.h"
-#include "perception/tube_scene.h"
+#include "models/base/error.h"
+#include "perception/scene/tube_scene.h"
 #include "scenes/coverage.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/pile.h"

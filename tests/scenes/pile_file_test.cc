@@ -4,8 +4,8 @@
 #include <fstream>
 #include <functional>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
 #include "scenes/pile.h"
 #include "tests/support/catch.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 #include "scenes/bin_body.h"
 #include "scenes/engine/mj_handles.h"
 #include "scenes/engine/stepping.h"

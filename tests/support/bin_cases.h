@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "hw_bridge/base/parallel.h"
+#include "models/base/parallel.h"
 #include "models/part.h"
 #include "perception/perceive.h"
-#include "twin/render/scan_geometry.h"
+#include "twin/render/scan/scan_geometry.h"
 
 namespace tubetwin {
 

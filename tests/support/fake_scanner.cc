@@ -1,6 +1,6 @@
 #include "tests/support/fake_scanner.h"
 
-#include "hw_bridge/base/random.h"
+#include "models/base/random.h"
 
 namespace tubetwin {
 

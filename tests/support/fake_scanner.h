@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "hw_bridge/base/error.h"
 #include "hw_bridge/cell/devices.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 

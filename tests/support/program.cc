@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "hw_bridge/base/files.h"
+#include "models/base/files.h"
 #include "tests/support/catch.h"
 
 namespace tubetwin {

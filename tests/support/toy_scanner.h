@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/polyline.h"
-#include "hw_bridge/base/random.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/polyline.h"
+#include "models/base/random.h"
 #include "models/bin.h"
 
 namespace tubetwin {

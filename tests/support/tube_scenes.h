@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "perception/tube_scene.h"
+#include "perception/scene/tube_scene.h"
 
 namespace tubetwin {
 

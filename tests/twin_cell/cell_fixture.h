@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "planner/motion_plan.h"
+#include "planner/motion/motion_planner.h"
 #include "scenes/pile.h"
 #include "twin/cell/twin_cell.h"
 #include "twin/cell/twin_cell_impl.h"

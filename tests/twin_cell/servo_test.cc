@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/twin_cell/cell_fixture.h"
 

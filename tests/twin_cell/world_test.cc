@@ -4,7 +4,7 @@
 #include "tests/support/catch.h"
 #include "tests/twin_cell/cell_fixture.h"
 #include "twin/cell/truth.h"
-#include "twin/render/ray_scene.h"
+#include "twin/render/scan/ray_scene.h"
 
 namespace tubetwin::test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/parallel.h"
-#include "perception/tube_scene.h"
+#include "models/base/parallel.h"
+#include "perception/scene/tube_scene.h"
 #include "scenes/pile.h"
-#include "twin/campaign/scenario.h"
+#include "twin/round/scenario.h"
 
 namespace CLI {
 class App;

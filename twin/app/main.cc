@@ -6,8 +6,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 #include "twin/app/common.h"
 
 namespace tubetwin {

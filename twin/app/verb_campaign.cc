@@ -5,19 +5,19 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "twin/app/campaign_aloud.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
+#include "twin/app/campaign_progress.h"
 #include "twin/app/common.h"
 #include "twin/campaign/campaign.h"
+#include "twin/campaign/campaign_round.h"
 #include "twin/campaign/campaign_status.h"
 #include "twin/campaign/campaign_summary.h"
-#include "twin/campaign/compare.h"
-#include "twin/campaign/kept_rounds.h"
 #include "twin/campaign/merge.h"
-#include "twin/campaign/report_campaign.h"
-#include "twin/campaign/report_round.h"
 #include "twin/campaign/run_campaign.h"
+#include "twin/report/campaign_page.h"
+#include "twin/report/round_page.h"
+#include "twin/study/compare.h"
 
 namespace tubetwin {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/text.h"
 #include "hw_bridge/cell/wall_clock.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
+#include "models/base/text.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/app/common.h"
 #include "twin/live/live_cell.h"

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/json.h"
+#include "models/base/json.h"
 #include "twin/app/common.h"
 #include "twin/live/emulate.h"
 

@@ -5,13 +5,13 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "models/base/text.h"
 #include "models/gripper_spec.h"
-#include "models/mesh.h"
-#include "perception/tube_of_mesh.h"
+#include "models/mesh/mesh.h"
+#include "perception/part_import/tube_of_mesh.h"
 #include "twin/app/common.h"
 #include "twin/render/tube_fit_picture.h"
 

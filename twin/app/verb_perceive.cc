@@ -4,14 +4,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/text.h"
-#include "perception/floor_pose.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
+#include "models/base/step_timer.h"
+#include "models/base/text.h"
 #include "perception/label_points.h"
 #include "perception/perceive.h"
-#include "perception/step_timer.h"
+#include "perception/view/floor_pose.h"
 #include "twin/app/common.h"
 
 namespace tubetwin {

@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
+#include "models/base/text.h"
 #include "twin/app/common.h"
 #include "twin/render/pile_picture.h"
 

@@ -5,19 +5,19 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/cloud.h"
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/text.h"
-#include "planner/arm_feasibility.h"
-#include "planner/choose.h"
+#include "models/base/cloud/cloud.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "models/base/text.h"
 #include "planner/evaluator/evaluator.h"
-#include "planner/more_motions.h"
-#include "planner/nudge.h"
-#include "planner/tilt_motions.h"
+#include "planner/extraction/more_motions.h"
+#include "planner/extraction/tilt_motions.h"
+#include "planner/pick/arm_feasibility.h"
+#include "planner/pick/nudge.h"
+#include "planner/pick/pick_planner.h"
 #include "twin/app/common.h"
-#include "twin/render/scan_geometry.h"
+#include "twin/render/scan/scan_geometry.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;

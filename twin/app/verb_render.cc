@@ -4,8 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "twin/app/common.h"
 #include "twin/render/perceived_picture.h"
 #include "twin/render/pile_picture.h"

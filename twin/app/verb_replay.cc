@@ -3,11 +3,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/cell/mcap_export.h"
+#include "hw_bridge/mcap/mcap_export.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "twin/app/common.h"
-#include "twin/campaign/replay_round.h"
+#include "twin/round/replay_round.h"
 
 namespace tubetwin {
 namespace {

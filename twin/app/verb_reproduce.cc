@@ -4,11 +4,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
-#include "twin/app/campaign_aloud.h"
-#include "twin/campaign/reproduction.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "twin/app/campaign_progress.h"
+#include "twin/study/reproduction.h"
 
 namespace tubetwin {
 namespace {

@@ -6,14 +6,14 @@
 
 #include <CLI/CLI.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/text.h"
-#include "hw_bridge/cell/replay_cell.h"
+#include "hw_bridge/recording/replay_cell.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
+#include "models/base/text.h"
 #include "twin/app/common.h"
-#include "twin/campaign/round.h"
 #include "twin/live/dry_run.h"
 #include "twin/live/live_cell.h"
+#include "twin/round/round.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;

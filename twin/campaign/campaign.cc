@@ -4,14 +4,14 @@
 #include <filesystem>
 #include <set>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
-#include "hw_bridge/base/random.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "models/base/random.h"
+#include "models/base/text.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/campaign/file_lock.h"
-#include "twin/campaign/held_round.h"
+#include "twin/round/round_checkpoint.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;

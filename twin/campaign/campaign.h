@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/json_fwd.h"
+#include "models/base/json_fwd.h"
 #include "models/part.h"
-#include "twin/campaign/scenario.h"
+#include "twin/round/scenario.h"
 
 namespace tubetwin {
 

@@ -8,12 +8,12 @@
 #include <filesystem>
 #include <set>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
-#include "twin/campaign/scoring.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "twin/campaign/shard_file.h"
-#include "twin/campaign/wilson.h"
+#include "twin/round/scoring.h"
+#include "twin/statistics/wilson.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;

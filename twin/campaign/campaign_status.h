@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/json_fwd.h"
+#include "models/base/json_fwd.h"
 #include "twin/campaign/run_campaign.h"
 
 namespace tubetwin {

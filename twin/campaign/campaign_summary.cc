@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <map>
 
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
-#include "twin/campaign/attempt_facts.h"
-#include "twin/campaign/scoring.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "twin/round/attempt_facts.h"
+#include "twin/round/scoring.h"
 
 namespace tubetwin {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "hw_bridge/base/json_fwd.h"
+#include "models/base/json_fwd.h"
 #include "twin/campaign/merge.h"
-#include "twin/campaign/statistics.h"
+#include "twin/statistics/statistics.h"
 
 namespace tubetwin {
 

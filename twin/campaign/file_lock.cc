@@ -9,7 +9,7 @@
 #include <cstring>
 #include <thread>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

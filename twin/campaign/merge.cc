@@ -5,13 +5,13 @@
 #include <map>
 #include <sstream>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/campaign_summary.h"
-#include "twin/campaign/result_files.h"
 #include "twin/campaign/shard_file.h"
+#include "twin/round/result_files.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;

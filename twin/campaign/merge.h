@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/json.h"
-#include "twin/campaign/round_record.h"
+#include "models/base/json.h"
+#include "twin/round/round_record.h"
 
 namespace tubetwin {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 
 namespace tubetwin {
 

@@ -9,12 +9,12 @@
 #include <memory>
 #include <set>
 
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "twin/campaign/campaign_round.h"
 #include "twin/campaign/campaign_status.h"
-#include "twin/campaign/kept_rounds.h"
-#include "twin/campaign/scoring.h"
 #include "twin/campaign/shard_file.h"
+#include "twin/round/scoring.h"
 
 namespace tubetwin {
 namespace {

@@ -12,8 +12,8 @@
 #include <optional>
 #include <sstream>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "twin/campaign/file_lock.h"
-#include "twin/campaign/round_record.h"
 #include "twin/campaign/shard.h"
+#include "twin/round/round_record.h"
 
 namespace tubetwin {
 

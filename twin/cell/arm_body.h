@@ -5,7 +5,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "models/arm.h"
+#include "models/arm/arm.h"
 #include "models/layout.h"
 
 namespace tubetwin {

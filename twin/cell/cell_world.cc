@@ -4,9 +4,9 @@
 #include <array>
 #include <string>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "scenes/bin_body.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/engine/stepping.h"

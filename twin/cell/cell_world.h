@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/json_fwd.h"
-#include "hw_bridge/base/time.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/base/json_fwd.h"
+#include "models/base/time.h"
 #include "models/bin.h"
 #include "models/gripper_spec.h"
 #include "models/layout.h"
@@ -16,7 +16,7 @@
 #include "scenes/pile.h"
 #include "scenes/tube_body.h"
 #include "twin/cell/pad_contacts.h"
-#include "twin/render/scan_geometry.h"
+#include "twin/render/scan/scan_geometry.h"
 
 namespace tubetwin {
 

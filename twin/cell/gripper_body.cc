@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/contact_bits.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/arm_body.h"
 

@@ -3,10 +3,10 @@
 #include <array>
 #include <optional>
 
-#include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/cell/devices.h"
 #include "hw_bridge/cell/servo_arm.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/base/json_fwd.h"
 #include "twin/cell/cell_world.h"
 
 namespace tubetwin {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "hw_bridge/base/json.h"
+#include "models/base/json.h"
 #include "twin/cell/twin_cell_impl.h"
 
 namespace tubetwin {

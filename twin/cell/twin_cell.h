@@ -4,13 +4,13 @@
 #include <memory>
 #include <string>
 
-#include "hw_bridge/base/json_fwd.h"
-#include "hw_bridge/base/parallel.h"
 #include "hw_bridge/cell/cell.h"
 #include "hw_bridge/cell/servo_arm.h"
+#include "models/base/json_fwd.h"
+#include "models/base/parallel.h"
 #include "models/physics.h"
 #include "scenes/pile.h"
-#include "twin/render/scan_geometry.h"
+#include "twin/render/scan/scan_geometry.h"
 
 namespace tubetwin {
 

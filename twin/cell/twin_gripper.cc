@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw_bridge/base/json.h"
+#include "models/base/json.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/gripper_body.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "hw_bridge/base/json_fwd.h"
 #include "hw_bridge/cell/devices.h"
+#include "models/base/json_fwd.h"
 #include "models/gripper_spec.h"
 #include "twin/cell/cell_world.h"
 

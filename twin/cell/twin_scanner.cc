@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 

@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "hw_bridge/base/parallel.h"
-#include "hw_bridge/base/random.h"
 #include "hw_bridge/cell/devices.h"
+#include "models/base/parallel.h"
+#include "models/base/random.h"
 #include "twin/cell/cell_world.h"
 #include "twin/cell/twin_arm.h"
 

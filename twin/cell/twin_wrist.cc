@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "hw_bridge/base/json.h"
+#include "models/base/json.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/arm_body.h"
 

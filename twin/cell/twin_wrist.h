@@ -2,9 +2,9 @@
 
 #include <Eigen/Dense>
 
-#include "hw_bridge/base/json_fwd.h"
-#include "hw_bridge/base/random.h"
 #include "hw_bridge/cell/devices.h"
+#include "models/base/json_fwd.h"
+#include "models/base/random.h"
 #include "models/physics.h"
 #include "twin/cell/cell_world.h"
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/time.h"
 #include "hw_bridge/cell/devices.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/base/time.h"
 #include "models/bin.h"
 #include "models/layout.h"
 

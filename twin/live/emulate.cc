@@ -7,14 +7,14 @@
 #include <thread>
 #include <utility>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
 #include "hw_bridge/cell/wall_clock.h"
-#include "hw_bridge/emulators/errand_thread.h"
-#include "twin/campaign/twin_setup.h"
+#include "hw_bridge/emulators/background_task.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 #include "twin/live/emulated_cell.h"
 #include "twin/live/fault_script.h"
+#include "twin/round/twin_setup.h"
 
 namespace tubetwin {
 namespace {

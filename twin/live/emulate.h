@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
-#include "hw_bridge/base/parallel.h"
-#include "twin/campaign/scenario.h"
+#include "models/base/parallel.h"
+#include "twin/round/scenario.h"
 
 namespace tubetwin {
 

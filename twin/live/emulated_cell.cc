@@ -5,8 +5,8 @@
 
 #include <asio.hpp>
 
-#include "hw_bridge/emulators/scanner_folder_emulator.h"
-#include "hw_bridge/emulators/scanner_gige_emulator.h"
+#include "hw_bridge/emulators/photoneo/scanner_folder_emulator.h"
+#include "hw_bridge/emulators/photoneo/scanner_gige_emulator.h"
 
 namespace tubetwin {
 namespace {

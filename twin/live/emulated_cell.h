@@ -5,14 +5,14 @@
 #include <memory>
 #include <string>
 
-#include "hw_bridge/base/json_fwd.h"
-#include "hw_bridge/emulators/arm_emulator.h"
-#include "hw_bridge/emulators/gripper_emulator.h"
-#include "hw_bridge/emulators/scanner_emulator.h"
-#include "hw_bridge/emulators/wrist_emulator.h"
-#include "twin/campaign/scenario.h"
+#include "hw_bridge/emulators/ati/wrist_emulator.h"
+#include "hw_bridge/emulators/photoneo/scanner_emulator.h"
+#include "hw_bridge/emulators/robotiq/gripper_emulator.h"
+#include "hw_bridge/emulators/yaskawa/arm_emulator.h"
+#include "models/base/json_fwd.h"
 #include "twin/cell/twin_cell.h"
 #include "twin/live/cycle_moments.h"
+#include "twin/round/scenario.h"
 
 namespace tubetwin {
 

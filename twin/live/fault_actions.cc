@@ -1,7 +1,7 @@
 #include <functional>
 #include <map>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "twin/live/fault_script.h"
 
 namespace tubetwin {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/config.h"
-#include "hw_bridge/base/time.h"
+#include "models/base/config/config.h"
+#include "models/base/time.h"
 #include "twin/live/emulated_cell.h"
 
 namespace tubetwin {

@@ -4,15 +4,15 @@
 #include <filesystem>
 #include <optional>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/json.h"
 #include "hw_bridge/cell/wall_clock.h"
 #include "hw_bridge/drivers/ati/netft_sensor.h"
 #include "hw_bridge/drivers/photoneo/scanner_link.h"
 #include "hw_bridge/drivers/robotiq/robotiq_gripper.h"
 #include "hw_bridge/drivers/yaskawa/yaskawa_arm.h"
-#include "twin/campaign/twin_setup.h"
+#include "models/base/error.h"
+#include "models/base/json.h"
 #include "twin/cell/twin_cell.h"
+#include "twin/round/twin_setup.h"
 
 namespace tubetwin {
 namespace {

@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include "hw_bridge/base/json_fwd.h"
-#include "hw_bridge/base/parallel.h"
 #include "hw_bridge/cell/cell.h"
-#include "twin/campaign/scenario.h"
+#include "models/base/json_fwd.h"
+#include "models/base/parallel.h"
+#include "twin/round/scenario.h"
 
 namespace tubetwin {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/engine/mj_handles.h"
 

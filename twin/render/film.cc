@@ -8,13 +8,13 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/render/film_panels.h"
 #include "twin/render/picture.h"
 #include "twin/render/recording.h"
-#include "twin/render/smooth_edges.h"
+#include "twin/render/scan/smooth_edges.h"
 #include "twin/render/stage.h"
 
 namespace tubetwin {

@@ -7,9 +7,9 @@
 
 #include <zstd.h>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/json.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
 
 namespace tubetwin {
 namespace {

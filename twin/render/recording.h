@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/parallel.h"
-#include "hw_bridge/base/polyline.h"
+#include "models/base/parallel.h"
+#include "models/base/polyline.h"
 #include "models/bin.h"
-#include "models/mesh.h"
+#include "models/mesh/mesh.h"
 
 namespace tubetwin {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <string_view>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/bin_body.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/tube_body.h"

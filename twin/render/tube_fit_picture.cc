@@ -7,7 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <opencv2/imgproc.hpp>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "twin/render/picture.h"
 #include "twin/render/stage.h"
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "hw_bridge/base/polyline.h"
-#include "models/mesh.h"
+#include "models/base/polyline.h"
+#include "models/mesh/mesh.h"
 
 namespace tubetwin {
 

@@ -9,12 +9,12 @@
 #include <optional>
 #include <thread>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/parallel.h"
-#include "hw_bridge/base/text.h"
 #include "hw_bridge/codecs/netft_config.h"
 #include "hw_bridge/codecs/rdt.h"
 #include "hw_bridge/drivers/ati/http_get.h"
+#include "models/base/error.h"
+#include "models/base/parallel.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {

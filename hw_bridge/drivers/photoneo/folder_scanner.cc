@@ -11,11 +11,11 @@
 #include <memory>
 #include <utility>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/files.h"
-#include "hw_bridge/base/text.h"
 #include "hw_bridge/codecs/scan_folder.h"
 #include "hw_bridge/drivers/photoneo/scan_check.h"
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {

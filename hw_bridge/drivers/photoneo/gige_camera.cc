@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
 #include "hw_bridge/drivers/photoneo/range_frame.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-#include "hw_bridge/base/cloud.h"
+#include "models/base/cloud/cloud.h"
 
 namespace tubetwin {
 

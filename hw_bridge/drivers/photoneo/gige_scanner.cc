@@ -3,9 +3,9 @@
 #include <chrono>
 #include <utility>
 
-#include "hw_bridge/base/text.h"
 #include "hw_bridge/drivers/photoneo/gige_camera.h"
 #include "hw_bridge/drivers/photoneo/scan_check.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {

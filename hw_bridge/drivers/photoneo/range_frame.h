@@ -4,7 +4,7 @@
 #include <string>
 #include <variant>
 
-#include "hw_bridge/base/cloud.h"
+#include "models/base/cloud/cloud.h"
 
 namespace tubetwin {
 

@@ -1,6 +1,6 @@
 #include "hw_bridge/drivers/photoneo/scan_check.h"
 
-#include "hw_bridge/base/text.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "hw_bridge/base/cloud.h"
+#include "models/base/cloud/cloud.h"
 
 namespace tubetwin {
 

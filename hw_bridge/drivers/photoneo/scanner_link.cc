@@ -2,10 +2,10 @@
 
 #include <utility>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
 #include "hw_bridge/drivers/photoneo/folder_scanner.h"
 #include "hw_bridge/drivers/photoneo/gige_scanner.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 

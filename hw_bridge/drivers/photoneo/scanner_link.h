@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "hw_bridge/base/config.h"
 #include "hw_bridge/drivers/photoneo/threaded_scanner.h"
+#include "models/base/config/config.h"
 
 namespace tubetwin {
 

@@ -3,7 +3,7 @@
 #include <exception>
 #include <utility>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 

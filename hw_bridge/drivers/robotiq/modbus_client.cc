@@ -6,7 +6,7 @@
 #include <cerrno>
 #include <cstdint>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <optional>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/parallel.h"
 #include "hw_bridge/drivers/robotiq/modbus_client.h"
+#include "models/base/error.h"
+#include "models/base/parallel.h"
 
 namespace tubetwin {
 namespace {

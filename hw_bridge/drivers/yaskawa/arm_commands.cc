@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "hw_bridge/base/text.h"
 #include "hw_bridge/drivers/yaskawa/arm_session.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/frames.h"
+#include "models/base/error.h"
+#include "models/base/frames.h"
 
 namespace tubetwin {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <variant>
 
-#include "hw_bridge/base/joint.h"
 #include "hw_bridge/codecs/hses.h"
+#include "models/base/joint.h"
 
 namespace tubetwin {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "hw_bridge/base/joint.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
+#include "models/base/joint.h"
 
 namespace tubetwin {
 

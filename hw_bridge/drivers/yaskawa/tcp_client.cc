@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 

@@ -4,9 +4,9 @@
 #include <stop_token>
 #include <thread>
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/parallel.h"
 #include "hw_bridge/drivers/yaskawa/arm_session.h"
+#include "models/base/error.h"
+#include "models/base/parallel.h"
 
 namespace tubetwin {
 

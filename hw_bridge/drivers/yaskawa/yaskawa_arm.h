@@ -4,7 +4,7 @@
 
 #include "hw_bridge/cell/devices.h"
 #include "hw_bridge/drivers/yaskawa/yaskawa_config.h"
-#include "models/arm.h"
+#include "models/arm/arm.h"
 
 namespace tubetwin {
 

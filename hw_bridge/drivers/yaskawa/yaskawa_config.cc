@@ -1,7 +1,7 @@
 #include "hw_bridge/drivers/yaskawa/yaskawa_config.h"
 
-#include "hw_bridge/base/error.h"
-#include "hw_bridge/base/text.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 

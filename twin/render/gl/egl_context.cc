@@ -8,7 +8,7 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {

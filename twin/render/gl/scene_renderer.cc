@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw_bridge/base/error.h"
+#include "models/base/error.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/render/gl/egl_context.h"
 

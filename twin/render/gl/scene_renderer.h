@@ -8,7 +8,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "hw_bridge/base/polyline.h"
+#include "models/base/polyline.h"
 
 namespace tubetwin {
 

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <future>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/cell/devices.h"
+#include "hw_bridge/emulators/photoneo/gige_fake_camera.h"
+#include "hw_bridge/emulators/photoneo/scanner_emulator.h"
+
+namespace tubetwin {
+
+struct ScannerGigeConfig {
+  std::string listen = "127.0.0.1";  ///< IPv4 address; the port, UDP 3956, is fixed.
+  int width = 1032, height = 772;    ///< Of every cloud of the scanner.
+};
+
+/// A PhoXi on GigE Vision over any Scanner: software trigger in, range image Coord3D_ABC32f in
+/// millimetres out, 0 0 0 where nothing was seen, no pose and no labels. What it does on the
+/// network, and what it must not be exposed to, says GigeFakeCamera.
+///
+/// A trigger starts a scan; a trigger while one runs makes that one worthless and starts another
+/// after it. What is left to compute, and the sending, run on a thread of their own, one scan at a
+/// time; the destructor waits for it. Lost packets are not sent again. A scan that cannot be had
+/// (refusal, failure, a cloud of another size) is never answered, as GigE Vision has no word for
+/// it: see last_problem(). A frozen link keeps its heartbeat, which is aravis's own.
+class ScannerGigeEmulator : public ScannerEmulator {
+ public:
+  /// `scanner` must outlive it. Throws Error(kDevice) when the address or its port cannot be had.
+  ScannerGigeEmulator(Scanner& scanner, const ScannerGigeConfig& config);
+  ~ScannerGigeEmulator() override;
+
+  void Tick(TimeNs now) override;
+
+ private:
+  enum class Stage { kIdle, kScanning, kComputing, kHolding, kSending };
+  struct Image {
+    std::vector<std::byte> bytes;
+    std::string problem;  ///< Then there are no bytes.
+  };
+  /// Nobody waits for the scan that runs any more.
+  bool Outdated() const;
+  void Start();
+  void FollowScan();
+  void Compute();
+  void TakeImage(TimeNs now);
+  void Send(TimeNs now);
+  void FollowSending();
+  void GiveUp(const std::string& problem);
+
+  Scanner& scanner_;
+  ScannerGigeConfig config_;
+  GigeFakeCamera camera_;
+  GvspSender sender_;
+
+  Stage stage_ = Stage::kIdle;
+  GvspClient client_;  ///< Who wanted the scan that runs.
+  ScanFaults::Ordered fault_;
+  std::future<Image> computing_;
+  std::vector<std::byte> bytes_;  ///< Wait to be sent.
+  TimeNs send_at_{0};
+  std::uint16_t frame_id_ = 0;  ///< The last one.
+  std::atomic<bool> stop_sending_ = false;
+  std::future<void> sending_;
+};
+
+}  // namespace tubetwin

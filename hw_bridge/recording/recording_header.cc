@@ -1,0 +1,112 @@
+#include "hw_bridge/recording/recording_header.h"
+
+#include <algorithm>
+
+#include "models/base/error.h"
+#include "models/base/json.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr const char* kSchema = "tubetwin/cell_recording/1";
+
+Json PoseJson(const RigidTransform& X_AB) {
+  return std::vector<double>(X_AB.matrix().data(), X_AB.matrix().data() + 16);
+}
+
+RigidTransform PoseFromJson(const JsonView& view) {
+  const std::vector<double> numbers = view.AsNumbers();
+  if (numbers.size() != 16) view.Fail("sixteen numbers of a pose, by columns, are needed");
+  RigidTransform X_AB;
+  std::copy(numbers.begin(), numbers.end(), X_AB.matrix().data());
+  return X_AB;
+}
+
+Json LayoutJson(const CellLayout& layout) {
+  return Json{{"X_FK", PoseJson(layout.X_FK)},          {"X_FE", PoseJson(layout.X_FE)},
+              {"X_FS", PoseJson(layout.X_FS)},          {"X_BT", PoseJson(layout.X_BT)},
+              {"tray_size_m", layout.tray_size_m},      {"tray_zone_m", layout.tray_zone_m},
+              {"slot_pitch_m", layout.slot_pitch_m},    {"p_BTilt", ToJson(layout.p_BTilt)},
+              {"carry_height_m", layout.carry_height_m}};
+}
+
+CellLayout LayoutFromJson(const JsonView& view) {
+  CellLayout layout;
+  layout.X_FK = PoseFromJson(view.Field("X_FK"));
+  layout.X_FE = PoseFromJson(view.Field("X_FE"));
+  layout.X_FS = PoseFromJson(view.Field("X_FS"));
+  layout.X_BT = PoseFromJson(view.Field("X_BT"));
+  layout.tray_size_m = view.Field("tray_size_m").AsNumber();
+  layout.tray_zone_m = view.Field("tray_zone_m").AsNumber();
+  layout.slot_pitch_m = view.Field("slot_pitch_m").AsNumber();
+  layout.p_BTilt = view.Field("p_BTilt").AsVector3();
+  layout.carry_height_m = view.Field("carry_height_m").AsNumber();
+  return layout;
+}
+
+/// A text that is JSON. The nlohmann exception would not name the source.
+Json Parsed(const std::string& text, const std::string& source) {
+  Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded() || !json.is_object()) {
+    throw Error(ErrorKind::kBadData, source + ": no JSON object");
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string HeaderToText(const CellRecordingHeader& header) {
+  Json json;
+  json["schema"] = kSchema;
+  json["versions"] = header.versions;
+  json["seed"] = header.seed;
+  json["fingerprint"] = header.fingerprint;
+  json["arm"] = "hc10";
+  json["layout"] = LayoutJson(header.layout);
+  json["bin"] = Json{{"size_m", header.bin.size_m}, {"X_BN", PoseJson(header.bin.X_BN)}};
+  json["part"] = PartToJson(header.part);
+  if (!header.held.empty()) json["held"] = header.held;
+  json["config_toml"] = header.config_toml;
+  return json.dump();
+}
+
+CellRecordingHeader HeaderFromText(const std::string& text, const std::string& source) {
+  const Json json = Parsed(text, source);
+  const JsonView view(json, source);
+  if (const JsonView schema = view.Field("schema"); schema.AsString() != kSchema) {
+    schema.Fail("'" + schema.AsString() + "', this program reads '" + kSchema + "'");
+  }
+  CellRecordingHeader header;
+  for (const auto& [name, version] : view.Field("versions").json().items()) {
+    header.versions[name] = JsonView(version, source).AsString();
+  }
+  header.seed = view.Field("seed").AsInteger();
+  header.fingerprint = view.Field("fingerprint").AsString();
+  if (const JsonView arm = view.Field("arm"); arm.AsString() != "hc10") {
+    arm.Fail("'" + arm.AsString() + "', allowed: hc10");
+  }
+  header.layout = LayoutFromJson(view.Field("layout"));
+  const JsonView bin = view.Field("bin");
+  const JsonView size = bin.Field("size_m");
+  if (size.Size() != 3) size.Fail("three numbers are needed");
+  for (std::size_t i = 0; i < 3; ++i) header.bin.size_m[i] = size.Item(i).AsNumber(0.01, 3.0);
+  header.bin.X_BN = PoseFromJson(bin.Field("X_BN"));
+  header.part = PartFromJson(view.Field("part"));
+  if (const auto held = view.Optional("held")) header.held = held->AsString();
+  header.config_toml = view.Field("config_toml").AsString();
+  return header;
+}
+
+std::string EndToText(const RecordingEnd& end) {
+  return Json{{"reason", end.reason}, {"commands", end.commands}, {"reads", end.reads}}.dump();
+}
+
+RecordingEnd EndFromText(const std::string& text, const std::string& source) {
+  const Json json = Parsed(text, source);
+  const JsonView view(json, source);
+  return {view.Field("reason").AsString(),
+          static_cast<std::uint64_t>(view.Field("commands").AsInteger()),
+          static_cast<std::uint64_t>(view.Field("reads").AsInteger())};
+}
+
+}  // namespace tubetwin

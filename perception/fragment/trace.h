@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "models/base/polyline.h"
+#include "perception/fragment/axis_space.h"
+
+namespace tubetwin {
+
+/// A component, or a part of one, in order along its curve.
+struct Trace {
+  Polyline line_N;          ///< Means of successive slices.
+  std::vector<int> voxels;  ///< Of space.voxels, those near the line.
+};
+
+/// Orders the voxels of one component by their distance along the component from its remotest end;
+/// what lies off the curve is traced again as a curve of its own. Pieces shorter than `shortest_m`
+/// are dropped.
+std::vector<Trace> TraceComponent(const AxisSpace& space, const std::vector<int>& component,
+                                  double step_m, double shortest_m);
+
+}  // namespace tubetwin

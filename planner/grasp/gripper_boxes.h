@@ -1,0 +1,33 @@
+#pragma once
+
+#include "models/base/frames.h"
+#include "models/bin.h"
+#include "models/gripper_spec.h"
+#include "planner/scene_query/box_distance.h"
+
+namespace tubetwin {
+
+/// What the gripper fills around E, as boxes in frame E (x along the grasped tube, y closing, z out
+/// of the tool), from the lower edge of the pads when closed on the tube up to its own body. All of
+/// it comes down vertically.
+struct GripperBoxes {
+  OrientedBox fingers;     ///< Both fingers and the gap between them: no other tube may be there.
+  OrientedBox finger[2];   ///< Towards -y and +y.
+  OrientedBox above_tube;  ///< The gap over the tube that will be held.
+  OrientedBox chassis;     ///< The body that carries the fingers, from the arm's list of shapes.
+  OrientedBox base;        ///< Its round foot, from the same list.
+};
+
+/// Boxes at `opening_m` between the pads, for a tube of `tube_radius_m` whose axis lies
+/// `height_over_axis_m` below E.
+GripperBoxes MakeGripperBoxes(double opening_m, double tube_radius_m, double height_over_axis_m,
+                              const GripperSpec& spec = {});
+
+/// Moved by X_NE into N.
+OrientedBox Moved(const RigidTransform& X_NE, const OrientedBox& box);
+
+/// Distance of a box to the bin's inner walls, negative when it reaches into one; `enough_m` when
+/// it is higher than the walls' rim by that, or farther away. Walls only, not the floor.
+double WallClearance(const OrientedBox& box_N, const Bin& bin, double enough_m);
+
+}  // namespace tubetwin

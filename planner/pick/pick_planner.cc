@@ -1,0 +1,315 @@
+#include "planner/pick/pick_planner.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+
+#include "models/base/error.h"
+#include "models/base/text.h"
+#include "planner/extraction/motions.h"
+#include "planner/grasp/grasps.h"
+#include "planner/pick/rollout_scheduler.h"
+#include "planner/scene_query/removal_order.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kManyReleased = 3.0;
+constexpr double kApart_m = 0.020;  // Two tries nearer than this are one try.
+double WallSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+bool IsNearAny(const std::vector<double>& tried_m, double at_m) {
+  return std::any_of(tried_m.begin(), tried_m.end(),
+                     [&](double other_m) { return std::abs(other_m - at_m) < kApart_m - 1e-9; });
+}
+
+struct Option {
+  Rank rank = Rank::kCertainFree;
+  PickPlan plan;
+};
+
+std::string DoubtAbout(const PerceivedTube& tube, const Part& part, const PlannerConfig& config) {
+  const double share = tube.length_m / part.length_m;
+  if (share < config.min_length_share) {
+    return "only " + Number(std::round(share * 100)) + " % of the part's length is known, below " +
+           Number(config.min_length_share * 100) + " %";
+  }
+  if (tube.confidence < config.min_confidence) {
+    return "confidence " + Number(std::round(tube.confidence * 100) / 100) + ", below " +
+           Number(config.min_confidence);
+  }
+  return "";
+}
+
+double TopOf(const TubeScene& scene) {
+  double top = 0.0;
+  for (const PerceivedTube& tube : scene.tubes) {
+    for (const Vector3& p : tube.centerline_N) top = std::max(top, p.z());
+  }
+  return top;
+}
+
+class Chooser {
+ public:
+  Chooser(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
+          const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,
+          const FeasibilityFunction& feasible, std::uint64_t seed)
+      : scene_(scene),
+        points_N_(points_N),
+        part_(part),
+        bin_(bin),
+        config_(config),
+        evaluate_(evaluate),
+        feasible_(feasible),
+        seed_(seed),
+        top_m_(TopOf(scene)) {}
+
+  PlanResult Run() {
+    const double start_s = WallSeconds();
+    std::vector<Option> options = FreeOptions();
+    TryAll(options, Rank::kCertainFree);
+    if (result_.plans.empty()) {
+      TryCovered(options);
+    }
+    Sort(options);
+    TryAll(options, Rank::kJams);
+    result_.planning_s = WallSeconds() - start_s;
+    return std::move(result_);
+  }
+
+ private:
+  TubeClass ClassOf(const PerceivedTube& tube) const {
+    return config_.classes == "occluded_joints" ? tube.class_paper.value_or(tube.tube_class)
+                                                : tube.tube_class;
+  }
+
+  std::vector<Target> Targets(bool free) {
+    std::vector<Target> targets;
+    for (const PerceivedTube& tube : scene_.tubes) {
+      const TubeClass seen_as = ClassOf(tube);
+      if ((seen_as == TubeClass::kFree) != free) continue;
+      if (seen_as == TubeClass::kStrong && config_.classes == "occluded_joints") {
+        result_.rejections.push_back({tube.id, "", "", "strongly occluded tubes are not picked"});
+        continue;
+      }
+      if (tube.centerline_N.size() < 2 || Length(tube.centerline_N) <= 0.0) continue;
+      const double released = std::min(1.0, ReleasedBy(scene_, tube.id) / kManyReleased);
+      Target target{&tube,
+                    DoubtAbout(tube, part_, config_),
+                    config_.weight_confidence * (1.0 - tube.confidence) +
+                        config_.weight_release * (1.0 - released),
+                    {}};
+      target.sites = FindGraspSites(scene_, tube, points_N_, bin_, config_);
+      Report(target.sites.rejections);
+      if (target.sites.sites.empty()) {
+        std::string reason = "no place where the gripper fits, upright or leaning";
+        if (!target.sites.rejections.empty()) {
+          const Rejection& middle = target.sites.rejections[target.sites.rejections.size() / 2];
+          reason += ", for example " + middle.grasp + ": " + middle.reason;
+        }
+        result_.rejections.push_back({tube.id, "", "", reason});
+        continue;
+      }
+      targets.push_back(std::move(target));
+    }
+    return targets;
+  }
+
+  std::vector<Option> FreeOptions() {
+    std::vector<Option> options;
+    if (config_.exclude_free) {
+      for (const PerceivedTube& tube : scene_.tubes) {
+        if (ClassOf(tube) != TubeClass::kFree) continue;
+        result_.rejections.push_back({tube.id, "", "", "free tubes are excluded"});
+      }
+      return options;
+    }
+    for (const Target& target : Targets(true)) {
+      const CandidateMotion up = UpMotion(*target.tube, config_);
+      result_.candidates.push_back(up);
+      AddOptions(target, up, nullptr, options);
+    }
+    Sort(options);
+    return options;
+  }
+
+  // Covered tubes that can be grasped, those in doubt last, else in the order of removal.
+  std::vector<Target> CoveredTargets() {
+    std::vector<Target> targets = Targets(false);
+    std::map<int, int> place;
+    for (const RemovalRank& rank : RemovalOrder(scene_)) {
+      place.emplace(rank.tube, static_cast<int>(place.size()));
+    }
+    std::stable_sort(targets.begin(), targets.end(), [&](const Target& a, const Target& b) {
+      if (a.doubt.empty() != b.doubt.empty()) return a.doubt.empty();
+      return place.at(a.tube->id) < place.at(b.tube->id);
+    });
+    return targets;
+  }
+
+  // Scores motions of covered tubes until one promises to take its tube alone, tries the best, goes
+  // on where the arm can run none of them.
+  void TryCovered(std::vector<Option>& options) {
+    const std::vector<Option> free = options;
+    const std::vector<Target> targets = CoveredTargets();
+    const RunnableFunction runnable = [this](const CandidateMotion& motion,
+                                             const std::vector<Grasp>& grasps) {
+      return FirstRunnable(motion, grasps);
+    };
+    CoveredSearch search({scene_, part_, bin_, config_, evaluate_, runnable, seed_, top_m_},
+                         targets, result_);
+    while (result_.plans.empty() && search.Next()) {
+      options = free;
+      for (const Scored& scored : search.scored()) {
+        const std::size_t before = options.size();
+        AddOptions(*scored.target, scored.motion, &scored.score, options);
+        if (scored.samples > 0) continue;
+        // Only a lower bound is known: after all that were rolled out whole.
+        for (std::size_t k = before; k < options.size(); ++k) {
+          options[k].rank = std::max(options[k].rank, Rank::kDoubtfulCovered);
+          options[k].plan.note = "its roll-out was given up when another motion was better";
+        }
+      }
+      Sort(options);
+      TryAll(options, Rank::kCertainCovered);
+    }
+    search.Finish();
+  }
+
+  // The first grasp with which the arm can run a motion, of those that are apart.
+  std::optional<Grasp> FirstRunnable(const CandidateMotion& motion,
+                                     const std::vector<Grasp>& grasps) {
+    std::vector<double> tried;
+    std::string against;
+    for (Grasp grasp : grasps) {
+      if (IsNearAny(tried, grasp.at_m)) continue;
+      tried.push_back(grasp.at_m);
+      const std::optional<std::string> reason = AgainstEitherYaw(grasp, motion);
+      if (!reason) return grasp;
+      if (against.empty()) against = *reason;
+    }
+    if (!tried.empty()) ReportArm(motion, tried.front(), against);
+    return std::nullopt;
+  }
+
+  // Why the arm can run the motion neither with this grasp nor with the hand turned by half a turn;
+  // nothing: it can, with the grasp as it is then.
+  std::optional<std::string> AgainstEitherYaw(Grasp& grasp, const CandidateMotion& motion) const {
+    const std::optional<std::string> against = feasible_(grasp, motion);
+    if (!against) return std::nullopt;
+    grasp.X_NG.linear() = grasp.X_NG.linear() * RotZ(kPi);
+    return feasible_(grasp, motion) ? against : std::nullopt;
+  }
+
+  void ReportArm(const CandidateMotion& motion, double at_m, const std::string& against) {
+    Report({{motion.tube, motion.name, "at " + Number(std::round(at_m * 1e3) / 1e3) + " m",
+             "arm: " + against}});
+  }
+
+  // All grasps of a tube for a motion; `score` null: the simulator was not needed.
+  void AddOptions(const Target& target, const CandidateMotion& motion, const CandidateScore* score,
+                  std::vector<Option>& options) {
+    const PerceivedTube& tube = *target.tube;
+    if (score != nullptr && score->status == CandidateScore::Status::kDiverged) {
+      result_.rejections.push_back({tube.id, motion.name, "", "the simulation diverged"});
+      return;
+    }
+    GraspSet grasps =
+        RankGrasps(target.sites, tube, motion, score != nullptr ? score->displacement_m : 0.0,
+                   top_m_, bin_, config_);
+    Report(grasps.rejections);
+    for (const Grasp& grasp : grasps.grasps) {
+      Option option;
+      option.rank = RankOf(ClassOf(tube) == TubeClass::kFree, !target.doubt.empty(), score);
+      option.plan.target = tube.id;
+      option.plan.target_class = ClassOf(tube);
+      option.plan.motion = motion;
+      option.plan.grasp = grasp;
+      option.plan.used_simulator = score != nullptr;
+      if (score != nullptr) {
+        option.plan.prediction = Prediction{score->displacement_m, score->extra_probability,
+                                            static_cast<int>(score->samples.size())};
+      }
+      option.plan.cost =
+          grasp.cost + target.cost +
+          (score != nullptr ? config_.weight_extra * ExtraProbability(*score, part_) : 0.0);
+      option.plan.note =
+          option.rank == Rank::kJams ? "the motion jammed in the simulator" : target.doubt;
+      options.push_back(std::move(option));
+    }
+  }
+
+  static void Sort(std::vector<Option>& options) {
+    std::stable_sort(options.begin(), options.end(), [](const Option& a, const Option& b) {
+      if (a.rank != b.rank) return a.rank < b.rank;
+      return a.plan.cost < b.plan.cost;
+    });
+  }
+
+  // Checks sorted options up to a rank, best first; what was tried before is not tried again.
+  void TryAll(const std::vector<Option>& options, Rank last) {
+    for (const Option& option : options) {
+      if (option.rank <= last) Try(option);
+    }
+  }
+
+  void Try(const Option& option) {
+    const int id = option.plan.target;
+    if (static_cast<int>(result_.plans.size()) >= config_.max_plans) return;
+    if (kept_[id] >= config_.plans_per_tube) return;
+    std::vector<double>& tried = tried_[{id, option.plan.motion.name}];
+    if (IsNearAny(tried, option.plan.grasp.at_m)) return;
+    tried.push_back(option.plan.grasp.at_m);
+    PickPlan plan = option.plan;
+    if (const std::optional<std::string> against = AgainstEitherYaw(plan.grasp, plan.motion)) {
+      ReportArm(plan.motion, plan.grasp.at_m, *against);
+      return;
+    }
+    ++kept_[id];
+    result_.plans.push_back(std::move(plan));
+  }
+
+  void Report(const std::vector<Rejection>& rejections) {
+    result_.rejections.insert(result_.rejections.end(), rejections.begin(), rejections.end());
+  }
+
+  const TubeScene& scene_;
+  const std::vector<Vector3>& points_N_;
+  const Part& part_;
+  const Bin& bin_;
+  const PlannerConfig& config_;
+  const EvaluateFunction& evaluate_;
+  const FeasibilityFunction& feasible_;
+  const std::uint64_t seed_;
+  const double top_m_;
+  PlanResult result_;
+  std::map<int, int> kept_;  // Plans per tube.
+  std::map<std::pair<int, std::string>, std::vector<double>> tried_;
+};
+
+}  // namespace
+
+int ReleasedBy(const TubeScene& scene, int id) {
+  return static_cast<int>(
+      std::count_if(scene.tubes.begin(), scene.tubes.end(), [&](const PerceivedTube& tube) {
+        bool covered = false;
+        for (const Crossing& crossing : scene.crossings) {
+          if (crossing.under != tube.id) continue;
+          if (crossing.over != id) return false;
+          covered = true;
+        }
+        return covered;
+      }));
+}
+
+PlanResult PlanPicks(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
+                     const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,
+                     const FeasibilityFunction& feasible, std::uint64_t seed) {
+  TT_CHECK(feasible);
+  return Chooser(scene, points_N, part, bin, config, evaluate, feasible, seed).Run();
+}
+
+}  // namespace tubetwin

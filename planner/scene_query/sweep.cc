@@ -1,0 +1,162 @@
+#include "planner/scene_query/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/base/error.h"
+#include "models/gripper_spec.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kStep_m = 0.005;
+constexpr double kChord_m = 0.001;    // Error of simplified lines, part of the margin.
+constexpr double kOverlap_m = 0.003;  // More than perception's error: one lies in the other.
+constexpr double kFingers_m = 0.09;   // Length of the fingers over what they hold.
+constexpr double kNearer_m = 3e-4;    // Coming nearer by less than this is arithmetic, not a push.
+
+double DistanceToLine(const Vector3& p, const Vector3& a, const Vector3& b) {
+  const Vector3 d = b - a;
+  const double length2 = d.squaredNorm();
+  const double t = length2 > 0.0 ? std::clamp(d.dot(p - a) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - t * d).norm();
+}
+
+void KeepPoints(const Polyline& line, std::size_t from, std::size_t to, double tolerance_m,
+                std::vector<char>& keep) {
+  double farthest = tolerance_m;
+  std::size_t split = 0;
+  for (std::size_t i = from + 1; i < to; ++i) {
+    const double distance = DistanceToLine(line[i], line[from], line[to]);
+    if (distance <= farthest) continue;
+    farthest = distance;
+    split = i;
+  }
+  if (split == 0) return;
+  keep[split] = 1;
+  KeepPoints(line, from, split, tolerance_m, keep);
+  KeepPoints(line, split, to, tolerance_m, keep);
+}
+
+double Top(const Polyline& line) {
+  double top = line.front().z();
+  for (const Vector3& p : line) top = std::max(top, p.z());
+  return top;
+}
+
+double Bottom(const Polyline& line) {
+  double bottom = line.front().z();
+  for (const Vector3& p : line) bottom = std::min(bottom, p.z());
+  return bottom;
+}
+
+// Poses of the motion every kStep_m, the start first, and from which of them on it only rises.
+struct Track {
+  std::vector<RigidTransform> poses;
+  std::size_t rising_from = 0;
+  bool slides_first = false;  // What lies against the tube is dragged at once.
+};
+
+Track TrackOf(const CandidateMotion& motion, const Polyline& moving) {
+  double reach_m = 0.0;
+  for (const Vector3& p : moving) reach_m = std::max(reach_m, (p - motion.pivot_N).norm());
+  Track track{PosesAlong(motion, kStep_m, reach_m)};
+  for (std::size_t k = 1; k < track.poses.size(); ++k) {
+    const RigidTransform &before = track.poses[k - 1], &pose = track.poses[k];
+    const Vector3 way = pose.translation() - before.translation();
+    if (way.head<2>().norm() > 1e-9 || way.z() < 0.0 ||
+        !pose.linear().isApprox(before.linear(), 1e-9)) {
+      track.rising_from = k;
+      if (k == 1) track.slides_first = true;
+    }
+  }
+  return track;
+}
+
+bool Touches(const Polyline& moving, const Polyline& other, double radii_m, const Track& track,
+             double margin_m) {
+  const double top = Top(other);
+  const double start = ClosestOfLines(moving, other).distance_m - radii_m;
+  if (track.slides_first && start < margin_m) return true;
+  if (start < -kOverlap_m) return true;  // They will push each other apart.
+  const double allowed = std::min(margin_m, start - kNearer_m);
+  for (std::size_t k = 1; k < track.poses.size(); ++k) {
+    const Polyline moved = Transformed(track.poses[k], moving);
+    // From here on it only rises, and it is over the other already.
+    if (k > track.rising_from && Bottom(moved) > top + radii_m + margin_m) return false;
+    if (ClosestOfLines(moved, other).distance_m - radii_m < allowed) return true;
+  }
+  return false;
+}
+
+const PerceivedTube& MovedTube(const TubeScene& scene, const CandidateMotion& motion) {
+  const auto found = std::find_if(scene.tubes.begin(), scene.tubes.end(),
+                                  [&](const PerceivedTube& t) { return t.id == motion.tube; });
+  TT_CHECK(found != scene.tubes.end());
+  return *found;
+}
+
+// Ids of the others that it touches, at most `most` of them.
+std::vector<int> Touched(const TubeScene& scene, const CandidateMotion& motion,
+                         const Polyline& moving, double radius_m, const Track& track,
+                         double margin_m, std::size_t most) {
+  std::vector<int> touched;
+  for (const PerceivedTube& other : scene.tubes) {
+    if (touched.size() == most) break;
+    if (other.id == motion.tube) continue;
+    if (Touches(moving, Simplify(other.centerline_N, kChord_m), radius_m + other.radius_m, track,
+                margin_m)) {
+      touched.push_back(other.id);
+    }
+  }
+  return touched;
+}
+
+std::vector<int> TouchedByTube(const TubeScene& scene, const CandidateMotion& motion,
+                               double margin_m, std::size_t most) {
+  TT_CHECK(!motion.waypoints_N.empty());
+  const PerceivedTube& tube = MovedTube(scene, motion);
+  const Polyline moving = Simplify(tube.centerline_N, kChord_m);
+  return Touched(scene, motion, moving, tube.radius_m, TrackOf(motion, moving), margin_m, most);
+}
+
+std::optional<int> First(const std::vector<int>& ids) {
+  return ids.empty() ? std::nullopt : std::optional<int>(ids.front());
+}
+
+}  // namespace
+
+Polyline Simplify(const Polyline& line, double tolerance_m) {
+  if (line.size() < 3) return line;
+  std::vector<char> keep(line.size(), 0);
+  keep.front() = keep.back() = 1;
+  KeepPoints(line, 0, line.size() - 1, tolerance_m, keep);
+  Polyline out;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (keep[i]) out.push_back(line[i]);
+  }
+  return out;
+}
+
+std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& motion,
+                                double margin_m) {
+  return First(TouchedByTube(scene, motion, margin_m, 1));
+}
+
+int CountTouched(const TubeScene& scene, const CandidateMotion& motion, double margin_m) {
+  return static_cast<int>(TouchedByTube(scene, motion, margin_m, scene.tubes.size()).size());
+}
+
+std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const CandidateMotion& motion,
+                                         const Vector3& p_N, double margin_m) {
+  TT_CHECK(!motion.waypoints_N.empty());
+  const GripperSpec gripper;
+  const double radius_m = std::hypot(
+      0.5 * gripper.pad_width_m, MovedTube(scene, motion).radius_m + gripper.finger_thickness_m);
+  const Polyline fingers = {p_N, p_N + Vector3(0, 0, kFingers_m)};
+  const Track track = TrackOf(motion, fingers);
+  if (track.rising_from == 0) return std::nullopt;
+  return First(Touched(scene, motion, fingers, radius_m, track, margin_m, 1));
+}
+
+}  // namespace tubetwin

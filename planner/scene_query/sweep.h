@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+
+#include "perception/scene/tube_scene.h"
+#include "planner/extraction/motion_types.h"
+
+namespace tubetwin {
+
+/// The fewest of a line's own points from which no left-out point is farther than `tolerance_m`
+/// (Douglas and Peucker's method); both ends kept.
+Polyline Simplify(const Polyline& line, double tolerance_m);
+
+/// The first tube, in the scene's order, that a motion would touch: whether its surface comes
+/// within `margin_m` of the moving one's, or nearer still when they are that near at the start. A
+/// tube that only supports a lifted one is left without being touched; one that lies against a tube
+/// that begins with a slide is dragged, and one that overlaps by more than 3 mm is pushed. The
+/// moving tube is rigid here; legs are looked at every 5 mm. Nothing: the motion disturbs no
+/// perceived tube. Precondition: the motion's tube is in the scene.
+std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& motion,
+                                double margin_m = 0.003);
+
+/// How many tubes it touches.
+int CountTouched(const TubeScene& scene, const CandidateMotion& motion, double margin_m = 0.003);
+
+/// The same for the closed fingers that hold the tube at p_N, as an upright cylinder around them. A
+/// motion that only rises takes them out as they came in: nothing.
+std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const CandidateMotion& motion,
+                                         const Vector3& p_N, double margin_m = 0.003);
+
+}  // namespace tubetwin

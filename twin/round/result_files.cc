@@ -1,0 +1,85 @@
+#include "twin/round/result_files.h"
+
+#include <sys/utsname.h>
+
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "scenes/engine/engine_error.h"
+
+namespace tubetwin {
+namespace fs = std::filesystem;
+namespace {
+
+std::string CpuName() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("model name", 0) == 0) {
+      const auto colon = line.find(": ");
+      if (colon != std::string::npos) return line.substr(colon + 2);
+    }
+  }
+  return "unknown";
+}
+
+std::string UtcNow() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+}  // namespace
+
+std::string ResolvedToml(const Scenario& scenario) {
+  Scenario copy = scenario;  // Visiting is non-const: one list serves reading and writing.
+  return WriteToml([&copy](ConfigVisitor& v) { copy.Visit(v); }, false);
+}
+
+void ClaimResultFolder(const std::string& folder, const std::string& resolved_toml, bool force) {
+  MakeFolder(folder);
+  const fs::path rows = fs::path(folder) / "picks.jsonl";
+  const fs::path config = fs::path(folder) / "config.resolved.toml";
+  if (force || !fs::exists(rows)) return;
+  if (!fs::exists(config) || ReadFile(config.string()) != resolved_toml) {
+    throw Error(ErrorKind::kCannotCreate,
+                folder + ": holds the rows of another configuration (" + config.string() +
+                    " differs); give another --out, or --force to replace them");
+  }
+}
+
+void WriteJsonLines(const std::vector<Json>& rows, const std::string& path) {
+  std::string text;
+  for (const Json& row : rows) text += row.dump() + "\n";
+  WriteFileAtomically(path, text);
+}
+
+Json Manifest(const Scenario& scenario, const std::string& resolved_toml,
+              const std::string& program_version, int threads, double wall_s) {
+  utsname name{};
+  uname(&name);
+  Json out;
+  out["schema"] = "tubetwin/manifest/1";
+  out["program"] = program_version;
+  out["mujoco"] = EngineVersion();
+  out["compiler"] = __VERSION__;
+  out["seed"] = scenario.seed;
+  out["fingerprint"] = Fingerprint(resolved_toml);
+  out["machine"] = Json{{"system", name.sysname},
+                        {"release", name.release},
+                        {"architecture", name.machine},
+                        {"cpu", CpuName()},
+                        {"threads", threads}};
+  out["finished_utc"] = UtcNow();
+  out["wall_s"] = wall_s;
+  return out;
+}
+
+}  // namespace tubetwin

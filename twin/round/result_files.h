@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "models/base/json_fwd.h"
+#include "twin/round/scenario.h"
+
+namespace tubetwin {
+
+/// Text of the scenario with every key written out; reading it again gives the same scenario.
+std::string ResolvedToml(const Scenario& scenario);
+
+/// Claims `folder` for a round of this configuration: creates it, and refuses with
+/// Error(kCannotCreate) when it holds picks.jsonl of another configuration and not `force`. Other
+/// files are left alone.
+void ClaimResultFolder(const std::string& folder, const std::string& resolved_toml, bool force);
+
+/// One JSON object per line, each without line breaks; written atomically.
+void WriteJsonLines(const std::vector<Json>& rows, const std::string& path);
+
+/// manifest.json: versions, seeds, machine, fingerprint of the configuration, start time. The one
+/// file besides timings.jsonl that holds what a clock or a machine said.
+Json Manifest(const Scenario& scenario, const std::string& resolved_toml,
+              const std::string& program_version, int threads, double wall_s);
+
+}  // namespace tubetwin

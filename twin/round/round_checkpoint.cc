@@ -1,0 +1,48 @@
+#include "twin/round/round_checkpoint.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "models/base/error.h"
+#include "models/base/files.h"
+
+namespace tubetwin {
+namespace fs = std::filesystem;
+
+void SaveHeldRound(const Pile& start, std::int64_t seed, const Json& cell, const HeldState& cycle,
+                   const Json& scorer, const std::string& path) {
+  const fs::path half = path + ".half";  // Never seen as a state.
+  SavePile(start, half.string());
+  Json document = ReadJsonFile(half.string());
+  fs::remove(half);
+  document["held"] =
+      Json{{"seed", seed}, {"cell", cell}, {"cycle", ToJson(cycle)}, {"scorer", scorer}};
+  WriteJsonFile(document, path);
+}
+
+std::optional<HeldRound> ReadHeldRound(const Scenario& scenario, const std::string& folder) {
+  const fs::path file(scenario.pile.file);
+  if (file.extension() != ".json") return std::nullopt;
+  HeldRound held;
+  held.file = (file.is_relative() ? fs::path(folder) / file : file).string();
+  held.document = ReadJsonFile(held.file);
+  if (!held.document.is_object() || !held.document.contains("held")) return std::nullopt;
+  held.seed = JsonView(held.document, held.file).Field("held").Field("seed").AsInteger();
+  return held;
+}
+
+std::vector<std::string> PileFilesOf(const Scenario& scenario, const std::string& folder) {
+  std::vector<std::string> files;
+  const fs::path given(scenario.pile.file);
+  const fs::path path = given.is_relative() ? fs::path(folder) / given : given;
+  if (given.empty() || !fs::is_directory(path)) return files;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    if (entry.path().extension() == ".json") {
+      files.push_back((given / entry.path().filename()).string());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,117 @@
+#include "twin/round/round_recorder.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include "models/base/cloud/cloud.h"
+#include "twin/render/thinned_points.h"
+#include "models/base/json.h"
+#include "twin/cell/truth.h"
+#include "twin/round/replay_round.h"
+
+namespace tubetwin {
+namespace fs = std::filesystem;
+namespace {
+
+double WallNow() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+RoundRecorder::RoundRecorder(RoundScorer scorer, const RoundOptions& options)
+    : options_(options), scorer_(std::move(scorer)), attempt_began_(WallNow()) {}
+
+void RoundRecorder::OnStep(const std::string& caption) {
+  if (tape != nullptr) tape->Caption(caption);
+  if (options_.replay != nullptr) options_.replay->Caption(caption);
+  if (options_.progress) {
+    options_.progress("attempt " + std::to_string(rows.size() + 1) + ": " + caption);
+  }
+}
+
+void RoundRecorder::OnAttemptEnd(const AttemptReport& report) {
+  rows.push_back(scorer_.AttemptRow(report, 0));
+  if (tape != nullptr) tape->Result(BelievedAttempt(report));
+  if (options_.replay != nullptr) options_.replay->Result(BelievedAttempt(report));
+  const double now = WallNow();
+  timings.push_back(RoundScorer::TimingRow(report, 0, now - attempt_began_));
+  attempt_began_ = now;
+  const Json& row = rows.back();
+  const bool failed = row["success"].is_null() ? row["outcome"] != "placed" : !row["success"];
+  if (options_.keep != RoundKeep::kRows && failed) SaveFailure();
+}
+
+bool RoundRecorder::AnyFailure() const {
+  return std::any_of(rows.begin(), rows.end(),
+                     [](const Json& row) { return row["success"] != true; });
+}
+
+void RoundRecorder::SaveFailure() {
+  const std::string name = FailureFolderName(static_cast<int>(rows.size()) - 1);
+  const std::string folder = (fs::path(options_.out_folder) / "failures" / name).string();
+  WriteJsonFile(rows.back(), folder + "/attempt.json");
+  OnFailure(folder);
+  for (std::size_t i = 0; i < last_views_.size(); ++i) {
+    WritePcd(last_views_[i], folder + "/view_" + std::to_string(i) + ".pcd");
+  }
+}
+
+TwinRoundRecorder::TwinRoundRecorder(TwinCell& twin, const Pile& pile,
+                                     std::vector<Recording::Visual> visuals,
+                                     const RoundOptions& options)
+    : RoundRecorder(RoundScorer(twin, static_cast<int>(pile.tubes.size())), options), twin_(twin) {
+  recording_.cell_xml = twin.ModelXml();
+  recording_.bin = pile.bin;
+  recording_.visuals = std::move(visuals);
+  twin.SetFrameObserver([this] { AddFrame(); });
+}
+
+void TwinRoundRecorder::OnStep(const std::string& caption) {
+  recording_.captions.push_back(caption);
+  RoundRecorder::OnStep(caption);
+}
+
+void TwinRoundRecorder::OnScene(const TubeScene& scene, const PickPlan* plan) {
+  Recording::Overlay overlay;
+  for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
+    overlay.lines_N.push_back(scene.tubes[i].centerline_N);
+    overlay.classes.push_back(static_cast<int>(scene.tubes[i].tube_class));
+    if (plan != nullptr && scene.tubes[i].id == plan->target) overlay.target = static_cast<int>(i);
+  }
+  if (options_.keep != RoundKeep::kRows) {
+    overlay.cloud_N = ThinnedPoints(last_views_, recording_.bin);
+  }
+  recording_.overlays.push_back(std::move(overlay));
+}
+
+void TwinRoundRecorder::OnReference(const Wrench& reference_K) {
+  reference_K_ = reference_K;
+  tared_ = true;
+}
+
+void TwinRoundRecorder::OnAttemptEnd(const AttemptReport& report) {
+  recording_.attempt_ends.push_back(static_cast<int>(recording_.frames.size()));
+  RoundRecorder::OnAttemptEnd(report);
+  recording_.overlays.push_back({});  // What was seen is stale now.
+}
+
+void TwinRoundRecorder::OnFailure(const std::string& folder) {
+  SavePile(Truth(twin_).CurrentPile(), folder + "/state.pile.json");
+}
+
+void TwinRoundRecorder::AddFrame() {
+  Recording::Frame frame;
+  for (const double q : twin_.Qpos()) frame.qpos.push_back(static_cast<float>(q));
+  if (tared_) {
+    const Wrench load = twin_.cell().wrist.Read().wrench_K - reference_K_;
+    frame.force_N = static_cast<float>(load.force_N.z());
+  }
+  frame.overlay = static_cast<int>(recording_.overlays.size()) - 1;
+  frame.caption = static_cast<int>(recording_.captions.size()) - 1;
+  recording_.frames.push_back(std::move(frame));
+}
+
+}  // namespace tubetwin

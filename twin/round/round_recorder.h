@@ -1,0 +1,76 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hw_bridge/recording/cell_recorder.h"
+#include "planner/cycle/pick_cycle.h"
+#include "twin/cell/twin_cell.h"
+#include "twin/render/recording.h"
+#include "twin/round/round.h"
+#include "twin/round/scoring.h"
+
+namespace tubetwin {
+
+/// Follows one round on any cell: rows, timings, the clouds of failed attempts. Lives as long as
+/// the round.
+class RoundRecorder : public CycleObserver {
+ public:
+  RoundRecorder(RoundScorer scorer, const RoundOptions& options);
+
+  void OnStep(const std::string& caption) override;
+  void OnClouds(const std::vector<OrganizedCloud>& views) override { last_views_ = views; }
+  void OnDetection(const Detection&) override { scorer_.AtDetection(); }
+  void OnAttemptEnd(const AttemptReport& report) override;
+
+  Json Summary(const RoundReport& report, double sim_s) const {
+    return scorer_.Summary(report, sim_s);
+  }
+  bool AnyFailure() const;
+
+  std::vector<Json> rows, timings;
+  CellRecorder* tape = nullptr;  ///< Of the cell; null: it is not recorded.
+
+ protected:
+  /// An attempt failed; its row is the last. `folder` exists and holds attempt.json and clouds.
+  virtual void OnFailure(const std::string& /*folder*/) {}
+
+  const RoundOptions& options_;
+  RoundScorer scorer_;
+  std::vector<OrganizedCloud> last_views_;
+
+ private:
+  void SaveFailure();
+  double attempt_began_ = 0.0;
+};
+
+/// The same in the twin: rows by truth, and what the world looked like.
+class TwinRoundRecorder : public RoundRecorder {
+ public:
+  TwinRoundRecorder(TwinCell& twin, const Pile& pile, std::vector<Recording::Visual> visuals,
+                    const RoundOptions& options);
+
+  void OnStep(const std::string& caption) override;
+  void OnScene(const TubeScene& scene, const PickPlan* plan) override;
+  void OnReference(const Wrench& reference_K) override;
+  void OnSeveral(const HeldState& state) override { on_several(state, scorer_.State()); }
+  void OnAttemptEnd(const AttemptReport& report) override;
+
+  void Resume(const JsonView& scorer) { scorer_.Restore(scorer); }
+  const Recording& recording() const { return recording_; }
+
+  /// Told of the moment when several hang, with the scorer's state.
+  std::function<void(const HeldState&, const Json&)> on_several;
+
+ private:
+  void OnFailure(const std::string& folder) override;
+  void AddFrame();
+
+  TwinCell& twin_;
+  Recording recording_;
+  Wrench reference_K_;
+  bool tared_ = false;
+};
+
+}  // namespace tubetwin

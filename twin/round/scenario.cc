@@ -1,0 +1,289 @@
+#include "twin/round/scenario.h"
+
+#include <filesystem>
+
+#include "models/base/error.h"
+#include "models/mesh/bin_mesh.h"
+#include "models/mesh/mesh.h"
+
+namespace tubetwin {
+namespace {
+
+std::string PathIn(const std::string& folder, const std::string& file) {
+  const std::filesystem::path path(file);
+  return (path.is_relative() ? std::filesystem::path(folder) / path : path).string();
+}
+
+std::vector<std::string> MeshUnitChoices() {
+  std::vector<std::string> units = MeshUnits();
+  units.insert(units.begin(), "");
+  return units;
+}
+
+struct BinMesh {
+  Mesh mesh;  ///< Metres.
+  MeshBin found;
+};
+
+BinMesh BinOfMesh(const Scenario& scenario, const std::string& folder) {
+  const std::string path = PathIn(folder, scenario.bin.mesh);
+  BinMesh bin;
+  bin.mesh = ReadMesh(path);
+  ScaleToMetres(bin.mesh, scenario.bin.mesh_units, path, "bin.mesh_units");
+  bin.found = FindBinOfMesh(bin.mesh);
+  if (bin.found.verdict != BinVerdict::kBin) {
+    throw Error(ErrorKind::kBadData, path + ": this is no bin for the cell: " + bin.found.reason);
+  }
+  return bin;
+}
+
+}  // namespace
+
+void Scenario::PileChoice::Visit(ConfigVisitor& v) {
+  v.Field("file",
+          "pile to start from (pile.json, CSV or the public set's text), or a moment that "
+          "cycle.end_at_several stored; in campaigns a folder of them too, one for each round; "
+          "empty: generate",
+          file);
+  v.Field("part", "part name or part file; empty: what the pile file says, else pvc_a", part);
+  v.Field("count", "tubes to generate", count, {1, 40});
+  v.Choice("arrangement", "how generated tubes are laid", arrangement,
+           {"dropped", "stirred", "threaded"});
+}
+
+void Scenario::BinChoice::Visit(ConfigVisitor& v) {
+  v.Field("size_m", "long, short, wall height in metres; empty: the pile's, else 0.77 0.58 0.09",
+          size_m, 0, {0.01, 3.0});
+  v.Field("mesh", "STL, OBJ or PLY of the bin, z upwards: gives size_m and looks", mesh);
+  v.Choice("mesh_units", "unit of the mesh; empty: metres", mesh_units, MeshUnitChoices());
+  v.Field("X_BN", "floor centre x y z in metres and yaw in degrees, in the robot's base", X_BN, 4);
+}
+
+void Scenario::PartChoice::Visit(ConfigVisitor& v) {
+  v.Field("name", "what lies in the bin of this cell: part name or part file; [pile] part wins",
+          name);
+}
+
+void Scenario::Visit(ConfigVisitor& v) {
+  v.Field("seed", "seed of everything random in the round", seed, {0, 9007199254740991.0});
+  v.Choice("profile", "pipeline profile", profile, PipelineProfiles());
+  v.Section("pile", "what lies in the bin", pile);
+  v.Section("bin", "the bin", bin);
+  v.Section("physics", "ranges that the round's physics is drawn from", physics);
+  v.Section("scan", "looking into the bin", scan);
+  v.Section("perception", "modelling tubes", perception);
+  v.Section("planner", "motions, grasps, choice", planner);
+  v.Section("evaluator", "physics roll-outs inside the planner", evaluator);
+  v.Section("resolution", "when several tubes hang in the fingers", resolution);
+  v.Section("cycle", "speeds, forces and waits of the pick cycle", cycle);
+  v.Section("part", "the part, for cell files", part);
+  v.Section("calibration", "how the tools hang on the flange", calibration);
+  v.Field("rate", "how many times as fast as the wall's the devices' clocks run (emulated ones)",
+          rate, {0.01, 100});
+  v.Section("cell", "which devices", cell);
+}
+
+std::string ScenarioPartName(const Scenario& scenario) {
+  if (!scenario.pile.part.empty()) return scenario.pile.part;
+  return scenario.part.name.empty() ? "pvc_a" : scenario.part.name;
+}
+
+CellLayout ScenarioLayout(const Scenario& scenario) {
+  const auto pose = [](const char* key, const std::vector<double>& x) {
+    if (Eigen::Vector4d(x[3], x[4], x[5], x[6]).norm() < 1e-6) {
+      throw Error(ErrorKind::kConfig, std::string("calibration.") + key +
+                                          ": the quaternion is zero; w x y z of length one is "
+                                          "needed, as in [0, 0, 0.033, 1, 0, 0, 0]");
+    }
+    return MakeTransform(RotationFromWxyz(x[3], x[4], x[5], x[6]), Vector3(x[0], x[1], x[2]));
+  };
+  CellLayout layout;
+  layout.X_FK = pose("X_FK", scenario.calibration.X_FK);
+  layout.X_FE = pose("X_FE", scenario.calibration.X_FE);
+  layout.X_FS = pose("X_FS", scenario.calibration.X_FS);
+  return layout;
+}
+
+SafetyLimits ScenarioSafety(const Scenario& scenario) {
+  SafetyLimits safety = scenario.cell.safety.AtRate(scenario.rate);
+  if (scenario.cell.arm.driver == "simple_message") {
+    safety.start_speed_m_s = scenario.cell.arm.start_speed_m_s;
+  }
+  return safety;
+}
+
+void RequireTwin(const Scenario& scenario, const std::string& who) {
+  if (scenario.cell.IsTwin()) return;
+  throw Error(ErrorKind::kConfig, "cell: " + who + " needs the twin's four devices; found arm '" +
+                                      scenario.cell.arm.driver + "', gripper '" +
+                                      scenario.cell.gripper.driver + "', wrist '" +
+                                      scenario.cell.wrist.driver + "', scanner '" +
+                                      scenario.cell.scanner.driver + "'");
+}
+
+RoundPhysics ScenarioPhysics(const Scenario& scenario, const Part& part) {
+  if (!scenario.physics.randomize) return NominalPhysics(part);
+  PhysicsRanges ranges = scenario.physics;
+  ranges.hand_eye_error_m *= scenario.cell.scanner.hand_eye_error;
+  ranges.hand_eye_error_deg *= scenario.cell.scanner.hand_eye_error;
+  return DrawPhysics(ranges, part,
+                     RandomStream(static_cast<std::uint64_t>(scenario.seed), 0, "physics"));
+}
+
+ScanSettings ScenarioScan(const Scenario& scenario, const RoundPhysics& physics) {
+  ScanSettings settings;
+  if (scenario.scan.resolution == "2064x1544") {
+    settings.width = settings.spec.full_width;
+    settings.height = settings.spec.full_height;
+  }
+  settings.effects = scenario.cell.scanner.effects;
+  settings.noise_scale = physics.depth_noise_scale;
+  settings.bias_seed = static_cast<std::uint64_t>(scenario.seed);
+  return settings;
+}
+
+PickCycleSetup ScenarioCycle(const Scenario& scenario, const Part& part, Parallelism parallelism) {
+  PickCycleSetup setup;
+  setup.part = part;
+  setup.perception = scenario.perception;
+  setup.planner = scenario.planner;
+  setup.scan = scenario.scan;
+  setup.resolution = scenario.resolution;
+  setup.cycle = scenario.cycle;
+  setup.seed = static_cast<std::uint64_t>(scenario.seed);
+  setup.evaluate = MakeEvaluator({parallelism, scenario.evaluator});
+  setup.parallelism = parallelism;
+  return setup;
+}
+
+const std::vector<std::string>& PipelineProfiles() {
+  static const std::vector<std::string> names = {"best", "leao2020"};
+  return names;
+}
+
+Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
+  Scenario asked;
+  source.ReadInto(asked);
+  Scenario scenario;
+  const std::string& chosen = profile.empty() ? asked.profile : profile;
+  if (chosen == "leao2020") {
+    scenario.perception.profile = "leao2020";
+    PlannerConfig& planner = scenario.planner;
+    planner.classes = "occluded_joints";
+    planner.escape_const_m = 0.03;
+    planner.samples = 1;
+    planner.separated = 0;
+    planner.max_simulated_s = 1e6;
+    planner.max_candidates = 1000;  // All weakly occluded tubes are simulated before the choice.
+    planner.weight_clearance = planner.weight_confidence = planner.weight_extra = 0.0;
+    planner.weight_release = 0.0;
+    planner.min_length_share = planner.min_confidence = 0.0;
+    planner.nudges = 0;
+    scenario.evaluator.give_up_m = planner.max_displacement_m;  // Where the paper's cost ends.
+    scenario.resolution.strategy = "plus45";
+  }
+  source.ReadInto(scenario);
+  if (chosen == "leao2020" && scenario.planner.nudges > 0) {
+    throw Error(ErrorKind::kConfig,
+                "planner.nudges is " + std::to_string(scenario.planner.nudges) +
+                    "; only 0 is allowed in the profile leao2020: the paper pushes no tube");
+  }
+  scenario.profile = chosen;
+  return scenario;
+}
+
+Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m,
+                const std::string& folder) {
+  Bin bin;
+  bin.size_m = pile_size_m;
+  if (!scenario.bin.size_m.empty()) {
+    if (scenario.bin.size_m.size() != 3) {
+      throw Error(ErrorKind::kConfig,
+                  "bin.size_m: three numbers are needed (long, short, wall), found " +
+                      std::to_string(scenario.bin.size_m.size()));
+    }
+    for (int i = 0; i < 3; ++i) bin.size_m[i] = scenario.bin.size_m[i];
+  }
+  if (!scenario.bin.mesh.empty()) {
+    if (!scenario.bin.size_m.empty()) {
+      throw Error(ErrorKind::kConfig,
+                  "bin.size_m and bin.mesh are both given; the mesh says the size: leave one out");
+    }
+    bin.size_m = BinOfMesh(scenario, folder).found.size_m;
+  }
+  const auto& x = scenario.bin.X_BN;
+  bin.X_BN = MakeTransform(RotZ(Radians(x[3])), Vector3(x[0], x[1], x[2]));
+  return bin;
+}
+
+std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario,
+                                               const std::string& folder) {
+  std::vector<Recording::Visual> visuals;
+  if (!scenario.bin.mesh.empty()) {
+    BinMesh bin = BinOfMesh(scenario, folder);
+    const RigidTransform X_BM = ScenarioBin(scenario, {}, folder).X_BN * bin.found.X_MN.inverse();
+    for (Vector3& v : bin.mesh.vertices) v = X_BM * v;
+    visuals.push_back({"world", {"bin_floor", "bin_wall_"}, std::move(bin.mesh)});
+  }
+  const auto& arm = scenario.cell.arm;
+  if (arm.visual_meshes.size() > kNumJoints + 1) {
+    throw Error(ErrorKind::kConfig,
+                "cell.arm.visual_meshes: " + std::to_string(arm.visual_meshes.size()) +
+                    " meshes are given; the arm has a base and 6 links");
+  }
+  for (std::size_t i = 0; i < arm.visual_meshes.size(); ++i) {
+    if (arm.visual_meshes[i].empty()) continue;
+    const std::string path = PathIn(folder, arm.visual_meshes[i]);
+    Mesh mesh = ReadMesh(path);
+    ScaleToMetres(mesh, arm.visual_units, path, "cell.arm.visual_units");
+    // What is mounted on the flange stays.
+    visuals.push_back({i == 0 ? "arm_base" : "arm_link" + std::to_string(i),
+                       {i == kNumJoints ? "arm_flange" : "arm_"},
+                       std::move(mesh)});
+  }
+  return visuals;
+}
+
+std::vector<ArchivedFile> ArchiveMeshes(Scenario& scenario, const std::string& folder) {
+  std::vector<ArchivedFile> files;
+  const auto archive = [&](std::string& file, const std::string& name) {
+    if (file.empty()) return;
+    const std::string path = PathIn(folder, file);
+    file = name + std::filesystem::path(path).extension().string();
+    files.push_back({path, file});
+  };
+  archive(scenario.bin.mesh, "given.bin");
+  for (std::size_t i = 0; i < scenario.cell.arm.visual_meshes.size(); ++i) {
+    archive(scenario.cell.arm.visual_meshes[i], "given.arm_" + std::to_string(i));
+  }
+  return files;
+}
+
+Pile AskedPile(const Scenario& scenario, const std::string& folder) {
+  PileOverrides overrides;
+  if (!scenario.pile.part.empty() || !scenario.part.name.empty()) {
+    overrides.part = ScenarioPartName(scenario);
+  }
+  if (!scenario.bin.size_m.empty() || !scenario.bin.mesh.empty()) {
+    overrides.bin_size_m = ScenarioBin(scenario, {}, folder).size_m;
+  }
+  Pile pile = LoadPile(PathIn(folder, scenario.pile.file), overrides);
+  pile.bin = ScenarioBin(scenario, pile.bin.size_m, folder);
+  return pile;
+}
+
+Pile ScenarioPile(const Scenario& scenario, const std::string& folder) {
+  if (!scenario.pile.file.empty()) return AskedPile(scenario, folder);
+  const Part part = LoadPart(ScenarioPartName(scenario));
+  const Bin bin = ScenarioBin(scenario, Bin().size_m, folder);
+  const RoundPhysics physics = ScenarioPhysics(scenario, part);
+  SettleResult made = GeneratePile(part, bin, scenario.pile.count, scenario.pile.arrangement,
+                                   static_cast<std::uint64_t>(scenario.seed), physics);
+  if (made.status != SettleStatus::kSettled) {
+    throw Error(ErrorKind::kInternal, std::string("no settled pile could be generated: ") +
+                                          ToString(made.status) + ", " + made.reason);
+  }
+  return std::move(made.pile);
+}
+
+}  // namespace tubetwin
