@@ -7,33 +7,33 @@
 
 namespace tubetwin {
 
-ErrandThread::ErrandThread() : thread_([this](const std::stop_token& stop) { Serve(stop); }) {}
+BackgroundTask::BackgroundTask() : thread_([this](const std::stop_token& stop) { Serve(stop); }) {}
 
-ErrandThread::~ErrandThread() = default;  // The thread ends after its errand.
+BackgroundTask::~BackgroundTask() = default;  // The thread ends after its task.
 
-void ErrandThread::Start(std::function<void()> errand) {
+void BackgroundTask::Start(std::function<void()> task) {
   {
     const std::lock_guard lock(mutex_);
-    TT_CHECK(!errand_);
-    errand_ = std::move(errand);
+    TT_CHECK(!task_);
+    task_ = std::move(task);
   }
   started_.notify_one();
 }
 
-bool ErrandThread::idle() const {
+bool BackgroundTask::idle() const {
   const std::lock_guard lock(mutex_);
-  return !errand_;
+  return !task_;
 }
 
-void ErrandThread::Serve(const std::stop_token& stop) {
+void BackgroundTask::Serve(const std::stop_token& stop) {
   GiveWay();
   std::unique_lock lock(mutex_);
-  while (started_.wait(lock, stop, [this] { return static_cast<bool>(errand_); })) {
-    const std::function<void()> errand = errand_;
+  while (started_.wait(lock, stop, [this] { return static_cast<bool>(task_); })) {
+    const std::function<void()> task = task_;
     lock.unlock();
-    errand();
+    task();
     lock.lock();
-    errand_ = nullptr;
+    task_ = nullptr;
   }
 }
 

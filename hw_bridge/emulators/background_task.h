@@ -7,17 +7,17 @@
 
 namespace tubetwin {
 
-/// A thread for what may block, above all disks: one errand at a time, beside a thread that keeps
+/// A thread for what may block, above all disks: one task at a time, beside a thread that keeps
 /// time and asks once per period whether it is done. Gives way to other threads (GiveWay).
-class ErrandThread {
+class BackgroundTask {
  public:
-  ErrandThread();
-  /// Waits for the errand under way.
-  ~ErrandThread();
+  BackgroundTask();
+  /// Waits for the task under way.
+  ~BackgroundTask();
 
-  /// The errand must not throw. Precondition: idle().
-  void Start(std::function<void()> errand);
-  /// No errand is under way; what the last one wrote can be read.
+  /// The task must not throw. Precondition: idle().
+  void Start(std::function<void()> task);
+  /// No task is under way; what the last one wrote can be read.
   bool idle() const;
 
  private:
@@ -25,7 +25,7 @@ class ErrandThread {
 
   mutable std::mutex mutex_;
   std::condition_variable_any started_;
-  std::function<void()> errand_;  ///< Empty: idle.
+  std::function<void()> task_;  ///< Empty: idle.
 
   std::jthread thread_;  ///< Last: ends before what it uses.
 };

@@ -9,7 +9,7 @@ constexpr std::size_t kMost = 4096;
 
 }  // namespace
 
-void Outbox::Put(const LinkFaults& link, TimeNs now, std::uint64_t to, std::string message) {
+void SendQueue::Put(const LinkFaults& link, TimeNs now, std::uint64_t to, std::string message) {
   if (link.drop) return;
   if (link.corrupt) message = Corrupted(std::move(message));
   const int copies = link.duplicate ? 2 : 1;
@@ -18,7 +18,7 @@ void Outbox::Put(const LinkFaults& link, TimeNs now, std::uint64_t to, std::stri
   }
 }
 
-void Outbox::Deliver(
+void SendQueue::Deliver(
     TimeNs now, const std::function<void(std::uint64_t to, const std::string& message)>& send) {
   while (!letters_.empty() && letters_.front().due <= now) {
     const Letter letter = std::move(letters_.front());

@@ -11,7 +11,7 @@ namespace tubetwin {
 
 /// What an emulator sends, on its way through a link with faults: lost, late, twice, damaged. Holds
 /// 4096 messages; more are lost, as in any network.
-class Outbox {
+class SendQueue {
  public:
   /// Takes a message for `to`, a number that means something to the owner.
   void Put(const LinkFaults& link, TimeNs now, std::uint64_t to, std::string message);

@@ -13,20 +13,20 @@ bool MayBeAcknowledged(WaitOutcome::Status status) {
 }
 
 void RetreatAndPutBack(CycleContext& c) {
-  c.mover.Resync();
+  c.executor.Resync();
   const double carry_B = c.cell.bin.X_BN.translation().z() + c.cell.layout.carry_height_m;
-  RigidTransform up = c.mover.X_BE();
+  RigidTransform up = c.executor.X_BE();
   if (up.translation().z() < carry_B) {
     up.translation().z() = carry_B;
-    c.mover.Line(up, kRetreatSpeed_m_s, kRetreatAcceleration_m_s2);
+    c.executor.Line(up, kRetreatSpeed_m_s, kRetreatAcceleration_m_s2);
   }
   const GripperState fingers = c.cell.gripper.State();
-  c.mover.SetOpening(fingers.opening_m);
+  c.executor.SetOpening(fingers.opening_m);
   const bool closed = fingers.object == GripperObject::kContactClosing;
   if (!closed || fingers.opening_m < kNothingOpening_m) return;
-  RigidTransform over = c.mover.X_BE();
+  RigidTransform over = c.executor.X_BE();
   over.translation().head<2>() = c.cell.bin.X_BN.translation().head<2>();
-  c.mover.Transfer(over, kRetreatSpeed_m_s, kRetreatAcceleration_m_s2);
+  c.executor.Transfer(over, kRetreatSpeed_m_s, kRetreatAcceleration_m_s2);
   PutBack(c);
 }
 

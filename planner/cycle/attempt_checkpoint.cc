@@ -46,7 +46,7 @@ Json PlanJson(const PickPlan& plan) {
                {"opening_m", plan.grasp.opening_m},
                {"used_simulator", plan.used_simulator},
                {"prediction", ToJson(plan.prediction)}};
-  AddWay(plan.motion, json);
+  AddObjectPath(plan.motion, json);
   return json;
 }
 
@@ -56,7 +56,7 @@ PickPlan PlanFromJson(const JsonView& view) {
       static_cast<int>(view.Field("target").AsInteger());
   plan.target_class = static_cast<TubeClass>(view.Field("class").AsNumber(0, 2));
   plan.motion.name = view.Field("motion").AsString();
-  static_cast<MotionWay&>(plan.motion) = WayFromJson(view);
+  static_cast<ObjectPath&>(plan.motion) = ObjectPathFromJson(view);
   plan.grasp.X_NG = MatrixFromJson(view.Field("X_NG"));
   plan.grasp.at_m = view.Field("at_m").AsNumber();
   plan.grasp.opening_m = view.Field("opening_m").AsNumber();
@@ -71,7 +71,7 @@ PickPlan PlanFromJson(const JsonView& view) {
 
 }  // namespace
 
-Json ToJson(const HeldState& state) {
+Json ToJson(const AttemptCheckpoint& state) {
   const AttemptReport& report = state.report;
   TT_CHECK(report.plan && report.detection && report.first_weighing);
   Json placed = Json::array();
@@ -95,8 +95,8 @@ Json ToJson(const HeldState& state) {
               {"opening_m", state.opening_m}};
 }
 
-HeldState HeldStateFromJson(const JsonView& view) {
-  HeldState state;
+AttemptCheckpoint HeldStateFromJson(const JsonView& view) {
+  AttemptCheckpoint state;
   AttemptReport& report = state.report;
   report.attempt = static_cast<int>(view.Field("attempt").AsInteger());
   report.tubes_in_bin = static_cast<int>(view.Field("tubes_in_bin").AsInteger());

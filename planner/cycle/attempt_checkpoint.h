@@ -12,7 +12,7 @@ namespace tubetwin {
 
 /// What the pick cycle knows where several tubes were found to hang in the fingers: with the state
 /// of the cell at that moment enough to finish the attempt.
-struct HeldState {
+struct AttemptCheckpoint {
   AttemptReport report;  ///< With plan and detection; no rejections, no computing times.
   Polyline line_E;       ///< Centerline of the gripped tube relative to E.
   Wrench reference_K;    ///< Tare.
@@ -23,7 +23,7 @@ struct HeldState {
 };
 
 /// All numbers come back bit by bit. Reading throws Error(kBadData).
-Json ToJson(const HeldState& state);
-HeldState HeldStateFromJson(const JsonView& view);
+Json ToJson(const AttemptCheckpoint& state);
+AttemptCheckpoint HeldStateFromJson(const JsonView& view);
 
 }  // namespace tubetwin

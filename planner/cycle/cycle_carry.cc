@@ -28,15 +28,15 @@ void Open(CycleContext& c) {
   open.force_N = c.setup.cycle.grip_force_N;
   c.cell.carrying = false;
   c.MoveFingers(open);
-  c.mover.SetOpening(open.opening_m);
+  c.executor.SetOpening(open.opening_m);
   c.cell.arm.SetPayload(0.0, Vector3::Zero());
   c.LetGo();
 }
 
 void Retreat(CycleContext& c) {
-  RigidTransform up = c.mover.X_BE();
+  RigidTransform up = c.executor.X_BE();
   up.translation().z() += kRetreat_m;
-  c.mover.Line(up, c.setup.cycle.approach_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+  c.executor.Line(up, c.setup.cycle.approach_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
 }
 
 /// Level -> tilted -> level about an axis through E, then how many hang.
@@ -45,9 +45,9 @@ HeldOutcome TiltAndWeigh(CycleContext& c, const Vector3& axis_B, double angle_de
     const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
     const double speed = Radians(c.setup.resolution.speed_deg_s);
     const Vector3 rotation_B = Radians(angle_deg) * axis_B;
-    c.mover.Tilt(rotation_B, speed);
+    c.executor.Tilt(rotation_B, speed);
     Wait(c.cell, kRestAfterTilt_s);
-    c.mover.Tilt(-rotation_B, speed);
+    c.executor.Tilt(-rotation_B, speed);
   }
   return c.Weigh(c.setup.cycle.settle_s).outcome;
 }
@@ -66,14 +66,14 @@ HeldOutcome TiltSequence(CycleContext& c, const Vector3& axis_B,
 
 /// Down until something is felt, a short rest, up again: extras that lie on the pile let go.
 HeldOutcome LowerAndRelift(CycleContext& c) {
-  const RigidTransform top = c.mover.X_BE();
+  const RigidTransform top = c.executor.X_BE();
   {
     const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
     RigidTransform down = top;
     down.translation().z() = c.cell.bin.X_BN.translation().z() + 0.10;
-    c.mover.Line(down, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+    c.executor.Line(down, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
     Wait(c.cell, 0.3);
-    c.mover.Line(top, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+    c.executor.Line(top, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
   }
   return c.Weigh(c.setup.cycle.settle_s).outcome;
 }
@@ -82,7 +82,7 @@ HeldOutcome LowerAndRelift(CycleContext& c) {
 /// keeps the scanner off the forearm in all of them.
 RigidTransform TiltStation(const CycleContext& c, const Vector3& axis_E,
                            const std::vector<double>& angles_deg) {
-  const Matrix3 R_BE = c.mover.X_BE().linear();
+  const Matrix3 R_BE = c.executor.X_BE().linear();
   const RigidTransform straight = MakeTransform(R_BE, c.cell.layout.p_BTilt);
   for (int k = 0; k < 2 * kMostYawSteps; ++k) {
     const double yaw_deg = kYawStep_deg * ((k + 1) / 2) * (k % 2 == 0 ? 1 : -1);
@@ -92,7 +92,7 @@ RigidTransform TiltStation(const CycleContext& c, const Vector3& axis_E,
     for (const double angle_deg : angles_deg) {
       rotations_B.push_back(Radians(angle_deg) * (turned.linear() * axis_E));
     }
-    if (c.mover.TiltsFrom(turned, rotations_B)) return turned;
+    if (c.executor.TiltsFrom(turned, rotations_B)) return turned;
   }
   return straight;
 }
@@ -105,11 +105,11 @@ HeldOutcome Carry(CycleContext& c, const RigidTransform& X_BE, int slot) {
   try {
     const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
     c.observer.OnStep("carrying to slot " + std::to_string(slot + 1));
-    c.mover.Transfer(X_BE, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
+    c.executor.Transfer(X_BE, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
   } catch (const MoveFailure& failure) {
     if (failure.status != WaitOutcome::Status::kObjectLost) throw;
     c.cell.carrying = false;
-    c.mover.Resync();
+    c.executor.Resync();
     c.report.reason = failure.what();
     if (c.Weigh(0.3).outcome == HeldOutcome::kNone) return HeldOutcome::kNone;
     // Opening on the word of one of the two could drop a tube.
@@ -141,7 +141,7 @@ void WaitForSteadyLoad(CycleContext& c, double most_s) {
 HeldOutcome Resolve(CycleContext& c, const Vector3& load_torque_K) {
   // The load torque's horizontal axis: turning about it in the positive sense lets the heavy side
   // go down.
-  const Matrix3 R_BE = c.mover.X_BE().linear();
+  const Matrix3 R_BE = c.executor.X_BE().linear();
   Vector3 axis_B = R_BE * load_torque_K;
   axis_B.z() = 0.0;
   axis_B = axis_B.norm() > kWeakTorque_Nm ? axis_B.normalized() : Vector3(Vector3::UnitX());
@@ -168,7 +168,8 @@ HeldOutcome Resolve(CycleContext& c, const Vector3& load_torque_K) {
   const RigidTransform station = TiltStation(c, axis_E, angles_deg);
   {
     const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
-    c.mover.Line(station, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+    c.executor.Line(station, c.setup.planner.lift_speed_m_s,
+                    c.setup.cycle.transfer_acceleration_m_s2);
   }
   if (strategy == ResolutionStrategy::kPutback) {
     c.observer.OnStep("several held: lowering and lifting again");
@@ -180,16 +181,16 @@ HeldOutcome Resolve(CycleContext& c, const Vector3& load_torque_K) {
 void PutBack(CycleContext& c) {
   const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
   c.observer.OnStep("putting back");
-  RigidTransform down = c.mover.X_BE();
+  RigidTransform down = c.executor.X_BE();
   const double floor_B = c.cell.bin.X_BN.translation().z();
   down.translation().z() = floor_B + c.cell.bin.wall_m() + 0.10;
-  if (down.translation().z() < c.mover.X_BE().translation().z()) {
-    c.mover.Line(down, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+  if (down.translation().z() < c.executor.X_BE().translation().z()) {
+    c.executor.Line(down, c.setup.planner.lift_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
   }
   down.translation().z() = floor_B + 0.05;
-  if (down.translation().z() < c.mover.X_BE().translation().z()) {
+  if (down.translation().z() < c.executor.X_BE().translation().z()) {
     // Hanging tubes touch first: what is felt as the load going down ends the descent.
-    c.mover.GuardedLine(down, 0.05, c.setup.cycle.guard_force_N);
+    c.executor.GuardedLine(down, 0.05, c.setup.cycle.guard_force_N);
   }
   Open(c);
   Wait(c.cell, 0.5);
@@ -200,10 +201,10 @@ AttemptOutcome Place(CycleContext& c, const Polyline& line_E) {
   const CycleConfig& speeds = c.setup.cycle;
   const std::optional<PlacementPose> found =
       PlanPlacement(c.cell.layout, Sagged(line_E, c.setup.part), c.setup.part.radius_m, c.placed_T,
-                    ToolYaw(c.mover.X_BE().linear()), [&](RigidTransform X_BE) {
-                      if (!c.mover.Reaches(X_BE)) return false;
+                    ToolYaw(c.executor.X_BE().linear()), [&](RigidTransform X_BE) {
+                      if (!c.executor.Reaches(X_BE)) return false;
                       X_BE.translation().z() += kAbovePlace_m;
-                      return c.mover.Reaches(X_BE);
+                      return c.executor.Reaches(X_BE);
                     });
   if (!found) throw MoveFailure(MoveFailure::Kind::kRejected, "no slot of the tray is in reach");
   const PlacementPose& pose = *found;
@@ -213,10 +214,10 @@ AttemptOutcome Place(CycleContext& c, const Polyline& line_E) {
   const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
   c.observer.OnStep("laying down");
   X_BE.translation().z() = pose.X_BE.translation().z() + kGuardedPlace_m;
-  c.mover.Line(X_BE, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
+  c.executor.Line(X_BE, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
   // Another tube may lie where this one comes to rest: what is felt ends the descent.
   X_BE.translation().z() = pose.X_BE.translation().z() - pose.raised_m + kPlaceGap_m;
-  c.mover.GuardedLine(X_BE, 2.0 * speeds.guarded_speed_m_s, 0.5 * speeds.guard_force_N);
+  c.executor.GuardedLine(X_BE, 2.0 * speeds.guarded_speed_m_s, 0.5 * speeds.guard_force_N);
   Open(c);
   const TimeNs released = c.cell.clock.Now();
   Retreat(c);

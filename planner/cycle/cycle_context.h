@@ -26,7 +26,7 @@ struct CycleContext {
   Cell& cell;
   const PickCycleSetup& setup;
   CycleObserver& observer;
-  Mover mover;
+  MotionExecutor executor;
   AttemptReport report;  ///< Of the running attempt.
   Wrench reference_K;    ///< Tare with empty fingers, tool vertical.
   TimeNs attempt_began{0};
@@ -70,7 +70,7 @@ struct CycleContext {
   /// From now on the fingers hold a part that lies so in frame E, or nothing.
   void Hold(const Polyline& line_E) {
     held = HeldPartOf(line_E, setup.part);
-    mover.SetLeastRamp(held.period_s);
+    executor.SetLeastRamp(held.period_s);
   }
   void LetGo() { Hold({}); }
 
@@ -88,9 +88,9 @@ struct CycleContext {
 };
 
 /// Looking into the bin: which views to take again, the clouds, and the scene they give.
-class Looker {
+class ViewScheduler {
  public:
-  explicit Looker(CycleContext& context);
+  explicit ViewScheduler(CycleContext& context);
 
   /// Everything may have moved: the next Look goes to every view.
   void MarkAll();

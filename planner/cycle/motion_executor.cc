@@ -11,25 +11,25 @@ constexpr double kSettle_s = 0.05;  ///< After a motion, before the next: the se
 
 }  // namespace
 
-Mover::Mover(Cell& cell)
+MotionExecutor::MotionExecutor(Cell& cell)
     : cell_(cell), planner_(cell.arm_model, cell.layout, cell.bin), q_(cell.arm.State().q) {}
 
-RigidTransform Mover::X_BE() const { return planner_.PoseOfE(q_); }
+RigidTransform MotionExecutor::X_BE() const { return planner_.PoseOfE(q_); }
 
-JointVector Mover::q() const { return q_; }
+JointVector MotionExecutor::q() const { return q_; }
 
-bool Mover::Reaches(const RigidTransform& X_BE) const {
+bool MotionExecutor::Reaches(const RigidTransform& X_BE) const {
   return planner_.Reach(X_BE, q_[5]).has_value();
 }
 
-JointVector Mover::Start() {
+JointVector MotionExecutor::Start() {
   // Something may have pushed the arm off where the last motion ended: go on from where it is.
   const JointVector measured = cell_.arm.State().q;
   if ((measured - q_).cwiseAbs().maxCoeff() > kPushed_rad) q_ = measured;
   return q_;
 }
 
-MotionOptions Mover::Options(double speed_m_s, double acceleration_m_s2) const {
+MotionOptions MotionExecutor::Options(double speed_m_s, double acceleration_m_s2) const {
   MotionOptions options;
   options.speed_m_s = speed_m_s;
   options.acceleration_m_s2 = least_ramp_s_ > 0.0
@@ -40,7 +40,7 @@ MotionOptions Mover::Options(double speed_m_s, double acceleration_m_s2) const {
   return options;
 }
 
-WaitOutcome Mover::Run(const MotionResult& planned, const char* what) {
+WaitOutcome MotionExecutor::Run(const MotionResult& planned, const char* what) {
   if (const auto* rejection = std::get_if<MotionRejection>(&planned)) {
     throw MoveFailure(MoveFailure::Kind::kRejected, std::string(what) + ": " + rejection->reason);
   }
@@ -54,14 +54,14 @@ WaitOutcome Mover::Run(const MotionResult& planned, const char* what) {
   return outcome;
 }
 
-void Mover::Transfer(const RigidTransform& X_BE, double speed_m_s, double acceleration_m_s2,
-                     bool either_yaw) {
+void MotionExecutor::Transfer(const RigidTransform& X_BE, double speed_m_s,
+                              double acceleration_m_s2, bool either_yaw) {
   MotionOptions options = Options(speed_m_s, acceleration_m_s2);
   options.either_yaw = either_yaw;
   Run(planner_.PlanTransfer(Start(), X_BE, options), "transfer");
 }
 
-void Mover::Joint(const RigidTransform& X_BE, bool either_yaw) {
+void MotionExecutor::Joint(const RigidTransform& X_BE, bool either_yaw) {
   MotionOptions options;
   options.opening_m = opening_m_;
   options.either_yaw = either_yaw;
@@ -76,14 +76,15 @@ void Mover::Joint(const RigidTransform& X_BE, bool either_yaw) {
   Run(planner_.PlanTransfer(Start(), X_BE, options), "transfer");
 }
 
-void Mover::Line(const RigidTransform& X_BE, double speed_m_s, double acceleration_m_s2,
-                 double finger_clearance_m) {
+void MotionExecutor::Line(const RigidTransform& X_BE, double speed_m_s, double acceleration_m_s2,
+                          double finger_clearance_m) {
   MotionOptions options = Options(speed_m_s, acceleration_m_s2);
   options.finger_clearance_m = finger_clearance_m;
   Run(planner_.PlanLine(Start(), X_BE, options), "line");
 }
 
-WaitOutcome Mover::GuardedLine(const RigidTransform& X_BE, double speed_m_s, double force_limit_N) {
+WaitOutcome MotionExecutor::GuardedLine(const RigidTransform& X_BE, double speed_m_s,
+                                        double force_limit_N) {
   // Guarded ends are near by intent: pads over the tray, a tube over the floor.
   MotionOptions options = Options(speed_m_s, 0.5);
   options.clearance_m = kFingerClearance_m;
@@ -104,15 +105,16 @@ WaitOutcome Mover::GuardedLine(const RigidTransform& X_BE, double speed_m_s, dou
   return outcome;
 }
 
-void Mover::Legs(const std::vector<RigidTransform>& X_BE, double speed_m_s, double turn_speed_rad_s,
-                 double acceleration_m_s2) {
+void MotionExecutor::Legs(const std::vector<RigidTransform>& X_BE, double speed_m_s,
+                          double turn_speed_rad_s, double acceleration_m_s2) {
   if (X_BE.empty()) return;
   MotionOptions options = Options(speed_m_s, acceleration_m_s2);
   options.turn_speed_rad_s = turn_speed_rad_s;
   Run(planner_.PlanPolyline(Start(), X_BE, options), "lift");
 }
 
-bool Mover::TiltsFrom(const RigidTransform& X_BE, const std::vector<Vector3>& rotations_B) const {
+bool MotionExecutor::TiltsFrom(const RigidTransform& X_BE,
+                               const std::vector<Vector3>& rotations_B) const {
   MotionOptions options = Options(0.25, 1.0);
   const MotionResult line = planner_.PlanLine(q_, X_BE, options);
   const auto* there = std::get_if<CheckedTrajectory>(&line);
@@ -126,7 +128,7 @@ bool Mover::TiltsFrom(const RigidTransform& X_BE, const std::vector<Vector3>& ro
   return true;
 }
 
-void Mover::Tilt(const Vector3& rotation_B, double speed_rad_s) {
+void MotionExecutor::Tilt(const Vector3& rotation_B, double speed_rad_s) {
   MotionOptions options;
   options.turn_speed_rad_s = speed_rad_s;
   options.turn_acceleration_rad_s2 = speed_rad_s / 0.3;  // Ramps of 0.3 s.

@@ -30,9 +30,9 @@ inline constexpr double kFingerClearance_m = 0.001;
 
 /// Plans motions from where the arm last ended and runs them. Every motion is checked before it
 /// starts; one that is rejected moves nothing. Poses are of E in B. Functions throw MoveFailure.
-class Mover {
+class MotionExecutor {
  public:
-  explicit Mover(Cell& cell);
+  explicit MotionExecutor(Cell& cell);
 
   RigidTransform X_BE() const;  ///< Where E is, from the joints.
   JointVector q() const;        ///< Where the next motion starts.
@@ -56,7 +56,7 @@ class Mover {
   /// Goes on from where the arm stands now, wherever that is.
   void Resync() { q_ = cell_.arm.State().q; }
 
-  /// Goes on as a mover whose last motion ended at `q`.
+  /// Goes on as a executor whose last motion ended at `q`.
   void Resume(const JointVector& q, double opening_m) {
     q_ = q;
     opening_m_ = opening_m;

@@ -24,25 +24,26 @@ double Stroke(CycleContext& c, const NudgeStroke& stroke, const Wrench& unloaded
   const RigidTransform X_BE = c.cell.bin.X_BN * stroke.X_NE;
   RigidTransform over = X_BE;
   over.translation().z() += kOver_m;
-  c.mover.Line(over, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
+  c.executor.Line(over, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
   RigidTransform near = X_BE;
   near.translation().z() += kSlow_m;
-  WaitOutcome press = c.mover.GuardedLine(near, speeds.guarded_speed_m_s, planner.nudge_press_N);
+  WaitOutcome press = c.executor.GuardedLine(near, speeds.guarded_speed_m_s, planner.nudge_press_N);
   if (press.status != WaitOutcome::Status::kContact) {
-    press = c.mover.GuardedLine(X_BE, kTouchSpeed_m_s, planner.nudge_press_N);
+    press = c.executor.GuardedLine(X_BE, kTouchSpeed_m_s, planner.nudge_press_N);
   }
   report.contact = report.contact || press.status == WaitOutcome::Status::kContact;
   const Wrench load_K = c.MeanWrench(kWindow_s) - unloaded_K;
   report.press_N = std::max(report.press_N, load_K.force_N.norm());
-  const RigidTransform from = c.mover.X_BE();
+  const RigidTransform from = c.executor.X_BE();
   RigidTransform to = from;
   to.translation() += c.cell.bin.X_BN.linear() * stroke.travel_N;
-  const WaitOutcome drag = c.mover.GuardedLine(to, planner.nudge_speed_m_s, planner.nudge_force_N);
+  const WaitOutcome drag =
+      c.executor.GuardedLine(to, planner.nudge_speed_m_s, planner.nudge_force_N);
   report.stopped = report.stopped || drag.status == WaitOutcome::Status::kContact;
-  const double gone_m = (c.mover.X_BE().translation() - from.translation()).norm();
-  RigidTransform up = c.mover.X_BE();
+  const double gone_m = (c.executor.X_BE().translation() - from.translation()).norm();
+  RigidTransform up = c.executor.X_BE();
   up.translation().z() = over.translation().z();
-  c.mover.Line(up, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
+  c.executor.Line(up, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
   return gone_m;
 }
 
@@ -53,10 +54,10 @@ void Strokes(CycleContext& c, const Nudge& nudge, NudgeReport& report) {
   close.opening_m = 0.0;
   close.speed_m_s = speeds.grip_speed_m_s;
   close.force_N = GripperSpec().min_force_N;
-  c.mover.SetOpening(c.MoveFingers(close).opening_m);
+  c.executor.SetOpening(c.MoveFingers(close).opening_m);
   RigidTransform above = c.cell.bin.X_BN * nudge.strokes.front().X_NE;
   above.translation().z() += speeds.approach_m;
-  c.mover.Transfer(above, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
+  c.executor.Transfer(above, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
   const Wrench unloaded_K = c.MeanWrench(speeds.weigh_window_s);
   for (const NudgeStroke& stroke : nudge.strokes) {
     report.travel_m += Stroke(c, stroke, unloaded_K, report);
@@ -77,9 +78,9 @@ void Push(CycleContext& c, const Nudge& nudge) {
     if (failure.kind != MoveFailure::Kind::kRejected) throw;
     report.rejected = failure.what();
   }
-  RigidTransform up = c.mover.X_BE();
+  RigidTransform up = c.executor.X_BE();
   up.translation().z() += c.setup.cycle.approach_m;
-  c.mover.Line(up, c.setup.cycle.approach_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
+  c.executor.Line(up, c.setup.cycle.approach_speed_m_s, c.setup.cycle.transfer_acceleration_m_s2);
   c.report.nudges.push_back(report);
 }
 
@@ -92,8 +93,8 @@ std::optional<int> TryNudge(CycleContext& c, const TubeScene& scene,
   const Bin& bin = c.cell.bin;
   const NudgeResult result =
       PlanNudge(scene, ThinPoints(views, bin), bin, c.setup.planner,
-                ArmFeasibility(c.mover.planner(), c.cell.layout, bin, c.setup.part.radius_m),
-                ArmNudgeFeasibility(c.mover.planner(), c.cell.layout, bin));
+                ArmFeasibility(c.executor.planner(), c.cell.layout, bin, c.setup.part.radius_m),
+                ArmNudgeFeasibility(c.executor.planner(), c.cell.layout, bin));
   c.report.compute_s.planning += ComputeClock_s() - began;
   c.report.rejections.insert(c.report.rejections.end(), result.rejections.begin(),
                              result.rejections.end());

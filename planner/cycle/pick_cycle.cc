@@ -26,7 +26,7 @@ struct EndAtSeveral {};
 class Round {
  public:
   Round(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer)
-      : c_{cell, setup, observer, Mover(cell), {}, {}, {}, {}, {}}, looker_(c_) {}
+      : c_{cell, setup, observer, MotionExecutor(cell), {}, {}, {}, {}, {}}, views_(c_) {}
 
   void BeginAttempt() {
     c_.report = AttemptReport();
@@ -47,27 +47,27 @@ class Round {
       attempt_ = 1;
       failed_.clear();
       expected_ = c_.report.tubes_in_bin - 1;
-      looker_.MarkAround(c_.report.plan->target);
+      views_.MarkAround(c_.report.plan->target);
       c_.cell.proven = true;
     } else {
       ++attempt_;
-      looker_.MarkAll();
+      views_.MarkAll();
     }
   }
 
   /// Looks until it is sure: an empty-looking bin is looked at whole before it is called empty.
-  const TubeScene& LookSurely() {
+  const TubeScene& RescanUntilConsistent() {
     c_.observer.OnStep("scanning");
-    const TubeScene* scene = &looker_.Look();
+    const TubeScene* scene = &views_.Look();
     // More than can be left is what an old view still shows of a tube that is gone.
     const bool too_many = expected_ >= 0 && static_cast<int>(scene->tubes.size()) > expected_;
-    if ((scene->tubes.empty() || too_many) && !looker_.all_fresh()) {
-      looker_.MarkAll();
-      scene = &looker_.Look();
+    if ((scene->tubes.empty() || too_many) && !views_.all_fresh()) {
+      views_.MarkAll();
+      scene = &views_.Look();
     }
     if (scene->tubes.empty() && scene->bin_content != BinContent::kEmpty) {
-      looker_.MarkAll();  // What is left of a tube may be enough in another scan.
-      scene = &looker_.Look();
+      views_.MarkAll();  // What is left of a tube may be enough in another scan.
+      scene = &views_.Look();
     }
     c_.report.tubes_in_bin = static_cast<int>(scene->tubes.size());
     expected_ = -1;
@@ -80,9 +80,9 @@ class Round {
     c_.observer.OnStep("planning");
     const double began = ComputeClock_s();
     const PlanResult result = PlanPicks(
-        scene, ThinPoints(looker_.views(), c_.cell.bin), c_.setup.part, c_.cell.bin,
+        scene, ThinPoints(views_.views(), c_.cell.bin), c_.setup.part, c_.cell.bin,
         c_.setup.planner, c_.setup.evaluate,
-        ArmFeasibility(c_.mover.planner(), c_.cell.layout, c_.cell.bin, c_.setup.part.radius_m),
+        ArmFeasibility(c_.executor.planner(), c_.cell.layout, c_.cell.bin, c_.setup.part.radius_m),
         c_.setup.seed);
     c_.report.rejections = result.rejections;
     // What failed is not tried again before everything else was.
@@ -111,7 +111,8 @@ class Round {
     RigidTransform above = X_BG;
     above.translation() += speeds.approach_m * back_B;
     // The tool weighs pointing down, so its own weight is taken off pointing down.
-    c_.mover.Transfer(Upright(above), speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2);
+    c_.executor.Transfer(Upright(above), speeds.transfer_speed_m_s,
+                         speeds.transfer_acceleration_m_s2);
     {
       const CycleContext::Timed weighing(c_, &AttemptReport::SimTime::settle);
       Wait(c_.cell, 0.3);
@@ -121,12 +122,12 @@ class Round {
     RigidTransform near = X_BG;
     near.translation() += speeds.guarded_m * back_B;
     if (plan.grasp.X_NG.linear()(2, 2) > -kUpright) {
-      c_.mover.Line(above, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
+      c_.executor.Line(above, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
     }
-    c_.mover.Line(near, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
+    c_.executor.Line(near, speeds.approach_speed_m_s, speeds.transfer_acceleration_m_s2);
     const WaitOutcome descent =
-        c_.mover.GuardedLine(X_BG, speeds.guarded_speed_m_s, speeds.guard_force_N);
-    const double short_m = (c_.mover.X_BE().translation() - X_BG.translation()).norm();
+        c_.executor.GuardedLine(X_BG, speeds.guarded_speed_m_s, speeds.guard_force_N);
+    const double short_m = (c_.executor.X_BE().translation() - X_BG.translation()).norm();
     if (descent.status == WaitOutcome::Status::kContact && short_m > kContactSlack_m) {
       c_.report.reason = "met something " + std::to_string(static_cast<int>(1e3 * short_m)) +
                          " mm above the grasp";
@@ -144,13 +145,13 @@ class Round {
   /// 3 cm lift, weigh, the rest of the motion, weigh for good.
   Detection LiftAndWeigh(const PickPlan& plan) {
     const RigidTransform& X_BN = c_.cell.bin.X_BN;
-    const RigidTransform X_NE = X_BN.inverse() * c_.mover.X_BE();
+    const RigidTransform X_NE = X_BN.inverse() * c_.executor.X_BE();
     c_.cell.arm.SetPayload(c_.setup.part.mass_kg, c_.cell.layout.X_FE.translation());
-    const SplitWay way = SplitAt(ToolWay(plan.motion, X_NE), X_NE, c_.setup.cycle.first_lift_m);
+    const SplitPath way = SplitAt(ToolPath(plan.motion, X_NE), X_NE, c_.setup.cycle.first_lift_m);
     const auto drive = [&](std::vector<RigidTransform> poses) {
       for (RigidTransform& pose : poses) pose = X_BN * pose;
-      c_.mover.Legs(poses, plan.motion.speed_m_s, plan.motion.turn_speed_rad_s,
-                    c_.setup.cycle.transfer_acceleration_m_s2);
+      c_.executor.Legs(poses, plan.motion.speed_m_s, plan.motion.turn_speed_rad_s,
+                       c_.setup.cycle.transfer_acceleration_m_s2);
     };
     {
       const CycleContext::Timed timed(c_, &AttemptReport::SimTime::move);
@@ -203,9 +204,10 @@ class Round {
     const CycleContext::Timed timed(c_, &AttemptReport::SimTime::move);
     Remember(plan);
     SetFingers(plan.grasp.opening_m, 0);
-    RigidTransform up = c_.mover.X_BE();
+    RigidTransform up = c_.executor.X_BE();
     up.translation().z() += 0.15;
-    c_.mover.Line(up, c_.setup.cycle.approach_speed_m_s, c_.setup.cycle.transfer_acceleration_m_s2);
+    c_.executor.Line(up, c_.setup.cycle.approach_speed_m_s,
+                     c_.setup.cycle.transfer_acceleration_m_s2);
   }
 
   Polyline HeldLine(const TubeScene& scene, const PickPlan& plan) const {
@@ -240,14 +242,14 @@ class Round {
     out.end = end;
     out.reason = reason;
     out.placed_believed = static_cast<int>(c_.placed_T.size());
-    out.unseen_m3 = looker_.scene().unseen_m3;
+    out.unseen_m3 = views_.scene().unseen_m3;
     return out;
   }
 
   /// Every tube that is left, with the first reason against it.
   std::string WhyNoPlan() const {
     std::string out;
-    for (const PerceivedTube& tube : looker_.scene().tubes) {
+    for (const PerceivedTube& tube : views_.scene().tubes) {
       out += (out.empty() ? "tube " : "; tube ") + std::to_string(tube.id) + ": ";
       const auto found = std::find_if(c_.report.rejections.begin(), c_.report.rejections.end(),
                                       [&](const Rejection& r) { return r.tube == tube.id; });
@@ -257,7 +259,7 @@ class Round {
   }
 
   /// Goes on where Stored() stood.
-  void Resume(const HeldState& state) {
+  void Resume(const AttemptCheckpoint& state) {
     const ResolutionStrategy strategy = c_.report.strategy;
     c_.report = state.report;
     c_.report.strategy = strategy;
@@ -265,19 +267,19 @@ class Round {
     c_.reference_K = state.reference_K;
     c_.attempt_began = state.attempt_began;
     c_.placed_T = state.placed_T;
-    c_.mover.Resume(state.q, state.opening_m);
+    c_.executor.Resume(state.q, state.opening_m);
     c_.Hold(state.line_E);
     c_.observer.OnReference(c_.reference_K);
     c_.observer.OnDetection(*c_.report.detection);
   }
 
   CycleContext& context() { return c_; }
-  Looker& looker() { return looker_; }
+  ViewScheduler& views() { return views_; }
 
  private:
-  HeldState Stored(const Polyline& line_E) const {
-    return {c_.report,   line_E,       c_.reference_K,      c_.attempt_began,
-            c_.placed_T, c_.mover.q(), c_.mover.opening_m()};
+  AttemptCheckpoint Stored(const Polyline& line_E) const {
+    return {c_.report,   line_E,          c_.reference_K,         c_.attempt_began,
+            c_.placed_T, c_.executor.q(), c_.executor.opening_m()};
   }
 
   GripperState SetFingers(double opening_m, int close) {
@@ -286,7 +288,7 @@ class Round {
     command.speed_m_s = c_.setup.cycle.grip_speed_m_s;
     command.force_N = c_.setup.cycle.grip_force_N;
     const GripperState state = c_.MoveFingers(command);
-    c_.mover.SetOpening(close ? state.opening_m : opening_m);
+    c_.executor.SetOpening(close ? state.opening_m : opening_m);
     return state;
   }
 
@@ -302,7 +304,7 @@ class Round {
   }
 
   CycleContext c_;
-  Looker looker_;
+  ViewScheduler views_;
   std::vector<std::pair<std::string, Vector3>> failed_;  ///< Since the last placed tube.
   int attempt_ = 1;
   int attempts_ = 0;
@@ -315,7 +317,7 @@ class Round {
 std::optional<RoundReport> Attempt(Round& round) {
   CycleContext& c = round.context();
   round.BeginAttempt();
-  const TubeScene& scene = round.LookSurely();
+  const TubeScene& scene = round.RescanUntilConsistent();
   std::optional<PickPlan> plan;
   for (;;) {
     if (scene.tubes.empty()) {
@@ -328,15 +330,15 @@ std::optional<RoundReport> Attempt(Round& round) {
     }
     plan = round.Decide(scene);
     if (plan) break;
-    if (!round.looker().all_fresh()) {
-      round.looker().MarkAll();  // Look everywhere before giving up.
-    } else if (const auto nudged = TryNudge(c, scene, round.looker().views())) {
-      round.looker().MarkAround(*nudged);
+    if (!round.views().all_fresh()) {
+      round.views().MarkAll();  // Look everywhere before giving up.
+    } else if (const auto nudged = TryNudge(c, scene, round.views().views())) {
+      round.views().MarkAround(*nudged);
     } else {
       round.EndAttempt(AttemptOutcome::kNoPlan, "no plan for any tube");
       return round.EndOfRound(RoundEnd::kNoPlan, round.WhyNoPlan());
     }
-    round.LookSurely();
+    round.RescanUntilConsistent();
   }
   c.report.plan = *plan;
   const Polyline line_E = round.HeldLine(scene, *plan);
@@ -379,8 +381,8 @@ RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver&
   }
 }
 
-RoundReport FinishHeldAttempt(Cell& cell, const PickCycleSetup& setup, const HeldState& state,
-                              CycleObserver& observer) {
+RoundReport ResumeAttempt(Cell& cell, const PickCycleSetup& setup, const AttemptCheckpoint& state,
+                          CycleObserver& observer) {
   Round round(cell, setup, observer);
   round.BeginAttempt();
   round.Resume(state);

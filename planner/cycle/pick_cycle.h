@@ -64,7 +64,7 @@ class CycleObserver {
   /// The decision how many hang in the fingers, before any resolution.
   virtual void OnDetection(const Detection& /*detection*/) {}
   /// Several hang in the fingers, and nothing was done about it yet; the arm is at rest.
-  virtual void OnSeveral(const HeldState& /*state*/) {}
+  virtual void OnSeveral(const AttemptCheckpoint& /*state*/) {}
   virtual void OnAttemptEnd(const AttemptReport& /*report*/) {}
 };
 
@@ -94,7 +94,7 @@ RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver&
 
 /// The rest of the attempt in which a cell was stored: resolution, then placing or putting back,
 /// with the strategy of `setup`. `cell` must stand as it stood then.
-RoundReport FinishHeldAttempt(Cell& cell, const PickCycleSetup& setup, const HeldState& state,
-                              CycleObserver& observer);
+RoundReport ResumeAttempt(Cell& cell, const PickCycleSetup& setup, const AttemptCheckpoint& state,
+                          CycleObserver& observer);
 
 }  // namespace tubetwin

@@ -24,20 +24,20 @@ OrganizedCloud ScanOrAgain(CycleContext& c) {
 
 }  // namespace
 
-Looker::Looker(CycleContext& context) : context_(context) {
+ViewScheduler::ViewScheduler(CycleContext& context) : context_(context) {
   poses_BS_ = ScanPoses(context.setup.scan, context.cell.bin);
   views_.resize(poses_BS_.size());
   taken_last_.assign(poses_BS_.size(), false);
   MarkAll();
 }
 
-void Looker::MarkAll() { marked_.assign(poses_BS_.size(), true); }
+void ViewScheduler::MarkAll() { marked_.assign(poses_BS_.size(), true); }
 
-bool Looker::all_fresh() const {
+bool ViewScheduler::all_fresh() const {
   return std::find(taken_last_.begin(), taken_last_.end(), false) == taken_last_.end();
 }
 
-bool Looker::Sees(std::size_t view, const Polyline& line_N) const {
+bool ViewScheduler::Sees(std::size_t view, const Polyline& line_N) const {
   const RigidTransform X_SN = poses_BS_[view].inverse() * context_.cell.bin.X_BN;
   for (const Vector3& p_N : line_N) {
     const Vector3 p_S = X_SN * p_N;
@@ -46,7 +46,7 @@ bool Looker::Sees(std::size_t view, const Polyline& line_N) const {
   return false;
 }
 
-void Looker::MarkAround(int tube_id) {
+void ViewScheduler::MarkAround(int tube_id) {
   if (context_.setup.scan.rescan_all) return MarkAll();
   const auto& tubes = scene_.tubes;
   std::vector<bool> moved(tubes.size(), false);
@@ -76,7 +76,7 @@ void Looker::MarkAround(int tube_id) {
   }
 }
 
-const TubeScene& Looker::Look() {
+const TubeScene& ViewScheduler::Look() {
   Cell& cell = context_.cell;
   const CycleConfig& speeds = context_.setup.cycle;
   const RigidTransform X_SE = cell.layout.X_FS.inverse() * cell.layout.X_FE;
@@ -88,10 +88,10 @@ const TubeScene& Looker::Look() {
       const CycleContext::Timed timed(context_, &AttemptReport::SimTime::move);
       const RigidTransform X_BE = poses_BS_[v] * X_SE;
       if (first) {
-        context_.mover.Transfer(X_BE, speeds.transfer_speed_m_s, speeds.transfer_acceleration_m_s2,
-                                true);
+        context_.executor.Transfer(X_BE, speeds.transfer_speed_m_s,
+                                   speeds.transfer_acceleration_m_s2, true);
       } else {
-        context_.mover.Joint(X_BE, true);
+        context_.executor.Joint(X_BE, true);
       }
       first = false;
     }

@@ -154,7 +154,7 @@ CandidateScore Summarize(const CandidateMotion& candidate,
   CandidateScore score;
   score.tube = candidate.tube;
   score.motion = candidate.name;
-  static_cast<MotionWay&>(score) = candidate;
+  static_cast<ObjectPath&>(score) = candidate;
   const double n = static_cast<double>(outcomes.size());
   int jammed = 0;
   bool diverged = false;
@@ -232,7 +232,7 @@ class Evaluation {
       CandidateScore& score = result_.candidates[k];
       score.tube = candidate.tube;
       score.motion = candidate.name;
-      static_cast<MotionWay&>(score) = candidate;
+      static_cast<ObjectPath&>(score) = candidate;
       score.status = Status::kPruned;
     }
     return to_run;

@@ -159,7 +159,7 @@ Disturbance Measure(const RolloutScene& scene, int index, double sim_s, const mj
 
 // How low a tube comes where the way turns it, as far as it keeps its shape; infinite where the way
 // does not.
-double LowestTurned(const TubeBody& tube, const MotionWay& way) {
+double LowestTurned(const TubeBody& tube, const ObjectPath& way) {
   double low = kNeverDown_m;
   for (std::size_t k = 0; k < way.rotations_N.size(); ++k) {
     if (!IsTurnedOver(way.rotations_N[k])) continue;

@@ -53,12 +53,12 @@ struct WayOut {
 };
 
 /// From where the tube was shifted to.
-WayOut FindWayOut(const Surround& around, const PerceivedTube& tube, const Vector3& direction,
+WayOut FindWayOut(const TubeObstacles& around, const PerceivedTube& tube, const Vector3& direction,
                   const Bin& bin, const PlannerConfig& config,
                   const Vector3& from = Vector3::Zero()) {
   WayOut out;
   out.direction = direction;
-  const double room = AllowedSlide(tube, direction, bin, config.wall_safety_m);
+  const double room = MaxSlideDistance(tube, direction, bin, config.wall_safety_m);
   for (double way = kWayStep_m; way <= room; way += kWayStep_m) {
     out.way_m = way;
     if (around.Covered(from + way * direction)) continue;
@@ -75,7 +75,7 @@ WayOut FindWayOut(const Surround& around, const PerceivedTube& tube, const Vecto
   return out;
 }
 
-void AddWayOut(const Surround& around, const PerceivedTube& tube, const WayOut& way,
+void AddWayOut(const TubeObstacles& around, const PerceivedTube& tube, const WayOut& way,
                const std::string& name, const PlannerConfig& config, MotionSet& set) {
   if (!way.clear) {
     set.rejections.push_back({tube.id, name, "",
@@ -97,13 +97,13 @@ Vector3 Direction(int k, int of) {
 }
 
 /// The cheapest way out of two legs that is cheaper than `best_cost_m`, or none.
-std::optional<CandidateMotion> FindTwoLegs(const Surround& around, const PerceivedTube& tube,
+std::optional<CandidateMotion> FindTwoLegs(const TubeObstacles& around, const PerceivedTube& tube,
                                            const Bin& bin, const PlannerConfig& config,
                                            double best_cost_m) {
   std::optional<CandidateMotion> best;
   for (int a = 0; a < kLegDirections; ++a) {
     const Vector3 first = Direction(a, kLegDirections);
-    const double room_m = AllowedSlide(tube, first, bin, config.wall_safety_m);
+    const double room_m = MaxSlideDistance(tube, first, bin, config.wall_safety_m);
     for (const double leg_m : kFirstLegs_m) {
       if (leg_m > room_m) break;
       const Vector3 corner = leg_m * first;
@@ -139,7 +139,7 @@ Vector3 WithinWalls(const PerceivedTube& tube, const Vector3& shift, const Bin& 
                     const PlannerConfig& config) {
   const Vector3 flat(shift.x(), shift.y(), 0.0);
   if (flat.norm() < 1e-9) return shift;
-  const double room = AllowedSlide(tube, flat.normalized(), bin, config.wall_safety_m);
+  const double room = MaxSlideDistance(tube, flat.normalized(), bin, config.wall_safety_m);
   const Vector3 kept = flat * std::min(1.0, room / flat.norm());
   return {kept.x(), kept.y(), shift.z()};
 }
@@ -155,7 +155,7 @@ Vector3 ChordDirection(const PerceivedTube& tube) {
 MotionSet MakeWaysOut(const TubeScene& scene, const PerceivedTube& tube, const Bin& bin,
                       const PlannerConfig& config) {
   MotionSet set;
-  const Surround around(scene, tube);
+  const TubeObstacles around(scene, tube);
   if (!around.Covered(Vector3::Zero())) return set;
   const Vector3 chord = ChordDirection(tube);
   AddWayOut(around, tube, FindWayOut(around, tube, chord, bin, config), "slide+", config, set);
@@ -278,7 +278,7 @@ bool IsTurnedOver(const Eigen::Quaterniond& rotation, double more_than_deg) {
   return (rotation * Vector3::UnitZ()).z() < std::cos(Radians(more_than_deg));
 }
 
-bool IsTip(const MotionWay& way) {
+bool IsTip(const ObjectPath& way) {
   return std::any_of(way.rotations_N.begin(), way.rotations_N.end(),
                      [](const auto& rotation) { return IsTurnedOver(rotation, kTipped_deg); });
 }

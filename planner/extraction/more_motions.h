@@ -41,6 +41,6 @@ MotionSet MakeTips(const PerceivedTube& tube, const Bin& bin, const PlannerConfi
 /// Whether a rotation turns the vertical by more than an angle.
 bool IsTurnedOver(const Eigen::Quaterniond& rotation, double more_than_deg = 1.0);
 /// Whether a tube is turned over so far, by more than 45 degrees, that others slide off it.
-bool IsTip(const MotionWay& way);
+bool IsTip(const ObjectPath& way);
 
 }  // namespace tubetwin

@@ -31,13 +31,13 @@ RigidTransform About(const Vector3& pivot, const Vector3& shift, const Eigen::Qu
 
 }  // namespace
 
-RigidTransform PoseAt(const MotionWay& way, std::size_t k) {
+RigidTransform PoseAt(const ObjectPath& way, std::size_t k) {
   TT_CHECK(k < way.waypoints_N.size());
   if (!way.turns()) return Translation(way.waypoints_N[k]);
   return About(way.pivot_N, way.waypoints_N[k], way.rotations_N[k]);
 }
 
-std::vector<RigidTransform> PosesAlong(const MotionWay& way, double step_m, double reach_m) {
+std::vector<RigidTransform> PosesAlong(const ObjectPath& way, double step_m, double reach_m) {
   std::vector<RigidTransform> poses = {PoseAt(way, 0)};
   for (std::size_t k = 1; k < way.waypoints_N.size(); ++k) {
     const Vector3 from = way.waypoints_N[k - 1], leg = way.waypoints_N[k] - from;
@@ -56,7 +56,7 @@ std::vector<RigidTransform> PosesAlong(const MotionWay& way, double step_m, doub
   return poses;
 }
 
-void AddWay(const MotionWay& way, Json& json) {
+void AddObjectPath(const ObjectPath& way, Json& json) {
   json["waypoints_m"] = ToJson(way.waypoints_N);
   if (!way.turns()) return;
   Json rotations = Json::array();
@@ -67,8 +67,8 @@ void AddWay(const MotionWay& way, Json& json) {
   json["pivot_m"] = ToJson(way.pivot_N);
 }
 
-MotionWay WayFromJson(const JsonView& view) {
-  MotionWay way;
+ObjectPath ObjectPathFromJson(const JsonView& view) {
+  ObjectPath way;
   way.waypoints_N = view.Field("waypoints_m").AsPolyline();
   const auto rotations = view.Optional("rotations_wxyz");
   if (!rotations) return way;
@@ -87,7 +87,7 @@ MotionWay WayFromJson(const JsonView& view) {
 
 Json ToJson(const CandidateMotion& motion) {
   Json json = {{"tube", motion.tube}, {"motion", motion.name}, {"speed_m_s", motion.speed_m_s}};
-  AddWay(motion, json);
+  AddObjectPath(motion, json);
   if (motion.forbidden_from_m <= motion.forbidden_to_m) {
     json["forbidden_m"] = {motion.forbidden_from_m, motion.forbidden_to_m};
   }
@@ -107,7 +107,7 @@ Json ToJson(const EvaluationResult& result) {
                                   {"sim_s", score.sim_s},
                                   {"wall_s", score.wall_s},
                                   {"samples", score.samples}});
-    AddWay(score, json["candidates"].back());
+    AddObjectPath(score, json["candidates"].back());
   }
   json["best"] = result.best >= 0 ? Json(result.best) : Json(nullptr);
   json["settle_s"] = result.settle_s;

@@ -15,7 +15,7 @@ namespace tubetwin {
 
 /// Where a tube goes from where it lies, frame N: at waypoint k every point p of it is at
 /// pivot + waypoint + rotation * (p - pivot). The first waypoint is zero and not turned.
-struct MotionWay {
+struct ObjectPath {
   std::vector<Vector3> waypoints_N;             ///< Of the pivot, metres.
   std::vector<Eigen::Quaterniond> rotations_N;  ///< One for each waypoint, or none: not turned.
   Vector3 pivot_N = Vector3::Zero();            ///< Without meaning where nothing turns.
@@ -24,20 +24,20 @@ struct MotionWay {
 };
 
 /// Takes points from where they lie to where they are at waypoint `k`. Precondition: k exists.
-RigidTransform PoseAt(const MotionWay& way, std::size_t k);
+RigidTransform PoseAt(const ObjectPath& way, std::size_t k);
 
 /// Such poses along the way, the first and every waypoint among them. Between waypoints the pivot
 /// goes straight and the rotation evenly; points within `reach_m` of the pivot move by `step_m` at
 /// most from one pose to the next.
-std::vector<RigidTransform> PosesAlong(const MotionWay& way, double step_m, double reach_m);
+std::vector<RigidTransform> PosesAlong(const ObjectPath& way, double step_m, double reach_m);
 
 /// Writes `waypoints_m` and, where the way turns, `rotations_wxyz` and `pivot_m` into an object.
-void AddWay(const MotionWay& way, Json& json);
-/// Reads what AddWay wrote. Throws Error(kBadData).
-MotionWay WayFromJson(const JsonView& view);
+void AddObjectPath(const ObjectPath& way, Json& json);
+/// Reads what AddObjectPath wrote. Throws Error(kBadData).
+ObjectPath ObjectPathFromJson(const JsonView& view);
 
 /// What a tube does after it was grasped.
-struct CandidateMotion : MotionWay {
+struct CandidateMotion : ObjectPath {
   int tube = 0;
   std::string name;  ///< "up", "escape+", "escape-", ...
   double speed_m_s = 0.25;
@@ -49,7 +49,7 @@ struct CandidateMotion : MotionWay {
 };
 
 /// One candidate's score (scores.json).
-struct CandidateScore : MotionWay {
+struct CandidateScore : ObjectPath {
   int tube = 0;
   std::string motion;
   double displacement_m = 0.0;  ///< Sum over the other tubes' centres of mass, baseline subtracted.

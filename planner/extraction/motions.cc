@@ -64,7 +64,7 @@ void AddEscape(const PerceivedTube& tube, const HiddenStretch& hidden, int sign,
   }
   const double wanted_m = variable_m + std::max(config.escape_const_m, 3.0 * tube.radius_m);
   const double slide_m =
-      std::min(wanted_m, AllowedSlide(tube, direction, bin, config.wall_safety_m));
+      std::min(wanted_m, MaxSlideDistance(tube, direction, bin, config.wall_safety_m));
   if (slide_m < tube.radius_m) {
     set.rejections.push_back({tube.id, motion.name, "",
                               "the bin's wall leaves " + Number(std::round(slide_m * 1e3)) +

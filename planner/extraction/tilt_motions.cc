@@ -136,7 +136,7 @@ MotionSet MakeTilts(const TubeScene& scene, const PerceivedTube& tube, const Bin
     tilted.centerline_N = Transformed(PoseAt(motion, turns), tube.centerline_N);
     const double wanted_m =
         lid.overhang_m + tube.radius_m + TubeOf(scene, covers[k].over).radius_m + kMargin_m;
-    const double room_m = AllowedSlide(tilted, lid.out, bin, config.wall_safety_m);
+    const double room_m = MaxSlideDistance(tilted, lid.out, bin, config.wall_safety_m);
     if (room_m < wanted_m) {
       reject("the bin's wall leaves " + Number(std::round(room_m * 1e3)) + " mm of the slide's " +
              Number(std::round(wanted_m * 1e3)) + " mm");
@@ -145,7 +145,7 @@ MotionSet MakeTilts(const TubeScene& scene, const PerceivedTube& tube, const Bin
     const Vector3 slide = wanted_m * lid.out;
     add(motion.waypoints_N.back() + slide, tilt_rad);
     add(motion.waypoints_N.back() + Vector3(0, 0, config.lift_m), 0.0);
-    motion.blocked_m = Surround(scene, tube).BlockedGrasps(slide, config.grasp_step_m);
+    motion.blocked_m = TubeObstacles(scene, tube).BlockedGrasps(slide, config.grasp_step_m);
     set.motions.push_back(std::move(motion));
   }
   return set;

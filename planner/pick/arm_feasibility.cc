@@ -39,7 +39,7 @@ FeasibilityFunction ArmFeasibility(const MotionPlanner& motion, const CellLayout
       return "approach: " + refused->reason;
     }
 
-    std::vector<RigidTransform> X_BE_way = ToolWay(candidate, X_NE);
+    std::vector<RigidTransform> X_BE_way = ToolPath(candidate, X_NE);
     for (RigidTransform& pose : X_BE_way) pose = bin.X_BN * pose;
     if (X_BE_way.empty()) return std::nullopt;
     options.opening_m = 2.0 * radius_m;

@@ -136,8 +136,8 @@ class Nudger {
   // How far the tube has to go to be grasped, with a margin.
   std::optional<double> TravelToGrasp(const PerceivedTube& tube, const Vector3& direction,
                                       std::string& reason) const {
-    const double room_m = AllowedSlide(tube, direction, bin_, 0.0);
-    const Surround around(scene_, tube);
+    const double room_m = MaxSlideDistance(tube, direction, bin_, 0.0);
+    const TubeObstacles around(scene_, tube);
     for (double travel_m = kStep_m; travel_m <= kMostTravel_m + 1e-9; travel_m += kStep_m) {
       if (travel_m > room_m) {
         reason = "another wall is in the way after " + Millimetres(room_m);

@@ -159,8 +159,8 @@ class Chooser {
                                              const std::vector<Grasp>& grasps) {
       return FirstRunnable(motion, grasps);
     };
-    CoveredSearch search({scene_, part_, bin_, config_, evaluate_, runnable, seed_, top_m_},
-                         targets, result_);
+    RolloutScheduler search({scene_, part_, bin_, config_, evaluate_, runnable, seed_, top_m_},
+                            targets, result_);
     while (result_.plans.empty() && search.Next()) {
       options = free;
       for (const Scored& scored : search.scored()) {

@@ -77,20 +77,20 @@ double ExtraProbability(const CandidateScore& score, const Part& part) {
   return (n * score.extra_probability + weight * expected) / (n + weight);
 }
 
-CoveredSearch::CoveredSearch(const SearchInput& input, const std::vector<Target>& targets,
-                             PlanResult& result)
+RolloutScheduler::RolloutScheduler(const SearchInput& input, const std::vector<Target>& targets,
+                                   PlanResult& result)
     : input_(input),
       targets_(targets),
       result_(result),
       most_simulated_s_(input.config.max_simulated_s * (input.part.is_hose() ? 1.0 : kRigid) *
                         kHoses / std::max<std::size_t>(input.scene.tubes.size(), 1)) {}
 
-bool CoveredSearch::Exhausted() {
+bool RolloutScheduler::Exhausted() {
   return next_ == targets_.size() && NextWithout(tipped_) == nullptr &&
          NextWithout(separated_) == nullptr;
 }
 
-bool CoveredSearch::Next() {
+bool RolloutScheduler::Next() {
   if (Exhausted()) return false;
   do {
     ScoreMore();
@@ -99,7 +99,7 @@ bool CoveredSearch::Next() {
   return true;
 }
 
-void CoveredSearch::Finish() {
+void RolloutScheduler::Finish() {
   EvaluationResult& out = result_.evaluation;
   for (Scored& scored : scored_) out.candidates.push_back(std::move(scored.score));
   for (std::size_t k = 0; k < out.candidates.size(); ++k) {
@@ -109,7 +109,7 @@ void CoveredSearch::Finish() {
   }
 }
 
-void CoveredSearch::ScoreMore() {
+void RolloutScheduler::ScoreMore() {
   if (next_ == targets_.size()) AddLongList();
   while (next_ < targets_.size() &&
          static_cast<int>(waiting_.size()) < input_.config.max_candidates) {
@@ -119,7 +119,7 @@ void CoveredSearch::ScoreMore() {
 }
 
 // The best tube that is not among those that had a list; null: none is to have it any more.
-const Target* CoveredSearch::NextWithout(const std::vector<const Target*>& had) {
+const Target* RolloutScheduler::NextWithout(const std::vector<const Target*>& had) {
   if (static_cast<int>(had.size()) >= input_.config.separated) return nullptr;
   for (const Scored* scored : InOrder()) {
     if (std::find(had.begin(), had.end(), scored->target) == had.end()) return scored->target;
@@ -127,7 +127,7 @@ const Target* CoveredSearch::NextWithout(const std::vector<const Target*>& had) 
   return nullptr;
 }
 
-void CoveredSearch::AddLongList() {
+void RolloutScheduler::AddLongList() {
   const Target* next = NextWithout(tipped_);
   if (next != nullptr) {
     tipped_.push_back(next);
@@ -139,13 +139,13 @@ void CoveredSearch::AddLongList() {
   }
 }
 
-void CoveredSearch::AddMotions(const Target& target) {
+void RolloutScheduler::AddMotions(const Target& target) {
   AddMotions(target, MakeMotions(input_.scene, *target.tube, input_.bin, input_.config));
   if (input_.config.classes == "occluded_joints") return;  // The paper's own candidates.
   AddMotions(target, MakeWaysOut(input_.scene, *target.tube, input_.bin, input_.config));
 }
 
-void CoveredSearch::AddMotions(const Target& target, MotionSet set) {
+void RolloutScheduler::AddMotions(const Target& target, MotionSet set) {
   const auto report = [this](const std::vector<Rejection>& rejections) {
     result_.rejections.insert(result_.rejections.end(), rejections.begin(), rejections.end());
   };
@@ -165,13 +165,13 @@ void CoveredSearch::AddMotions(const Target& target, MotionSet set) {
 }
 
 // Whether a motion of that name is among them, for the same tube.
-bool CoveredSearch::HasOf(const Waiting& waiting, const std::vector<Scored>& among) {
+bool RolloutScheduler::HasOf(const Waiting& waiting, const std::vector<Scored>& among) {
   return std::any_of(among.begin(), among.end(), [&](const Scored& scored) {
     return scored.target == waiting.target && scored.motion.name == waiting.motion.name;
   });
 }
 
-void CoveredSearch::ScreenWaiting() {
+void RolloutScheduler::ScreenWaiting() {
   const PlannerConfig& config = input_.config;
   std::stable_sort(waiting_.begin(), waiting_.end(), [&](const Waiting& a, const Waiting& b) {
     const bool doubtful_a = !a.target->doubt.empty(), doubtful_b = !b.target->doubt.empty();
@@ -218,7 +218,7 @@ void CoveredSearch::ScreenWaiting() {
   waiting_.clear();
 }
 
-void CoveredSearch::Refine() {
+void RolloutScheduler::Refine() {
   for (;;) {
     std::vector<Scored*> order = InOrder();
     if (order.empty() || IsRefined(*order.front())) return;
@@ -234,7 +234,7 @@ void CoveredSearch::Refine() {
   }
 }
 
-std::vector<Scored*> CoveredSearch::InOrder() {
+std::vector<Scored*> RolloutScheduler::InOrder() {
   std::vector<Scored*> order;
   for (Scored& scored : scored_) order.push_back(&scored);
   std::stable_sort(order.begin(), order.end(), [this](const Scored* a, const Scored* b) {
@@ -244,18 +244,18 @@ std::vector<Scored*> CoveredSearch::InOrder() {
   return order;
 }
 
-bool CoveredSearch::IsRefined(const Scored& scored) const {
+bool RolloutScheduler::IsRefined(const Scored& scored) const {
   return scored.score.status != CandidateScore::Status::kDone ||
          scored.samples >= input_.config.samples;
 }
 
 // To take its tube alone.
-bool CoveredSearch::Promises(const CandidateScore& score) const {
+bool RolloutScheduler::Promises(const CandidateScore& score) const {
   return ExtraProbability(score, input_.part) <= input_.config.accept_extra;
 }
 
 // Whether it would promise if it took its tube alone in all samples to come.
-bool CoveredSearch::MayPromise(const Scored& scored) const {
+bool RolloutScheduler::MayPromise(const Scored& scored) const {
   CandidateScore score = scored.score;
   const double known = static_cast<double>(score.samples.size());
   score.samples.resize(std::max<std::size_t>(score.samples.size(), input_.config.samples));
@@ -263,7 +263,7 @@ bool CoveredSearch::MayPromise(const Scored& scored) const {
   return Promises(score);
 }
 
-double CoveredSearch::CostOf(const Scored& scored, const CandidateScore& score) const {
+double RolloutScheduler::CostOf(const Scored& scored, const CandidateScore& score) const {
   const PlannerConfig& config = input_.config;
   const double share = std::min(score.displacement_m / config.max_displacement_m, 1.0);
   return scored.grasp_cost + config.weight_trajectory * share + scored.target->cost +
@@ -271,7 +271,7 @@ double CoveredSearch::CostOf(const Scored& scored, const CandidateScore& score) 
 }
 
 // The displacement with which the first roll-out of a motion makes it dearer than a rival.
-double CoveredSearch::WorthUpTo(const Scored& scored, const Scored& rival) const {
+double RolloutScheduler::WorthUpTo(const Scored& scored, const Scored& rival) const {
   constexpr int kHalvings = 20;
   const Rank own = RankOf(scored, nullptr), other = RankOf(rival, &rival.score);
   if (own < other) return std::numeric_limits<double>::infinity();
@@ -291,7 +291,7 @@ double CoveredSearch::WorthUpTo(const Scored& scored, const Scored& rival) const
   return low_m;
 }
 
-bool CoveredSearch::AnyPromising() const {
+bool RolloutScheduler::AnyPromising() const {
   return std::any_of(scored_.begin(), scored_.end(), [this](const Scored& scored) {
     return scored.target->doubt.empty() && IsRefined(scored) &&
            (scored.score.status == CandidateScore::Status::kDone ||
@@ -300,8 +300,8 @@ bool CoveredSearch::AnyPromising() const {
   });
 }
 
-void CoveredSearch::AddSamples(const std::vector<Scored*>& motions, int samples,
-                               const std::vector<double>& give_up_m) {
+void RolloutScheduler::AddSamples(const std::vector<Scored*>& motions, int samples,
+                                  const std::vector<double>& give_up_m) {
   if (motions.empty()) return;
   TT_CHECK(input_.evaluate);
   EvaluationRequest request;

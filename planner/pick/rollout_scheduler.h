@@ -62,9 +62,10 @@ struct SearchInput {
 /// among many. A best motion that cannot promise anything waits with its samples until all have
 /// been rolled out once. What the arm cannot run is not rolled out. Candidates, rejections and
 /// times go into the result.
-class CoveredSearch {
+class RolloutScheduler {
  public:
-  CoveredSearch(const SearchInput& input, const std::vector<Target>& targets, PlanResult& result);
+  RolloutScheduler(const SearchInput& input, const std::vector<Target>& targets,
+                   PlanResult& result);
 
   /// Goes on until a motion promises to take its tube alone (`accept_extra`), nothing is left to
   /// score or the simulated time is spent: `max_simulated_s` with seven hoses; of fewer more in

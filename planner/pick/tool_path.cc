@@ -21,7 +21,7 @@ double AngleBetween(const RigidTransform& a, const RigidTransform& b) {
 
 }  // namespace
 
-std::vector<RigidTransform> ToolWay(const MotionWay& way, const RigidTransform& X_NE_grasp) {
+std::vector<RigidTransform> ToolPath(const ObjectPath& way, const RigidTransform& X_NE_grasp) {
   std::vector<RigidTransform> out;
   for (std::size_t k = 1; k < way.waypoints_N.size(); ++k) {
     out.push_back(PoseAt(way, k) * X_NE_grasp);
@@ -35,9 +35,9 @@ RigidTransform Upright(const RigidTransform& X_NE) {
   return MakeTransform(TurnDown(X_NE).toRotationMatrix() * X_NE.linear(), X_NE.translation());
 }
 
-SplitWay SplitAt(const std::vector<RigidTransform>& X_NE, const RigidTransform& X_NE_grasp,
-                 double cut_m) {
-  SplitWay out;
+SplitPath SplitAt(const std::vector<RigidTransform>& X_NE, const RigidTransform& X_NE_grasp,
+                  double cut_m) {
+  SplitPath out;
   double gone_m = 0.0;
   bool cut = false;
   RigidTransform before = X_NE_grasp;

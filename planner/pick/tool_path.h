@@ -9,19 +9,19 @@ namespace tubetwin {
 /// Poses of the tool at the waypoints after the first, X_NE, when it holds a tube at `X_NE_grasp`
 /// and the tube goes along `way`. Where the tool does not point down at the end, it then turns
 /// about E, the shortest way, until it does: that is how it weighs and places.
-std::vector<RigidTransform> ToolWay(const MotionWay& way, const RigidTransform& X_NE_grasp);
+std::vector<RigidTransform> ToolPath(const ObjectPath& way, const RigidTransform& X_NE_grasp);
 
 /// The pose turned about E, the shortest way, until the tool points down; unchanged where it does
 /// to within 0.01 rad.
 RigidTransform Upright(const RigidTransform& X_NE);
 
 /// A tool's way in two parts, between which the load is weighed for the first time.
-struct SplitWay {
+struct SplitPath {
   std::vector<RigidTransform> first, rest;
 };
 /// Cut where E has gone `cut_m` of the legs from `X_NE_grasp` on; where the tool turns in the leg
 /// that would be cut or does not point down after it, at the first pose later that points down.
-SplitWay SplitAt(const std::vector<RigidTransform>& X_NE, const RigidTransform& X_NE_grasp,
-                 double cut_m);
+SplitPath SplitAt(const std::vector<RigidTransform>& X_NE, const RigidTransform& X_NE_grasp,
+                  double cut_m);
 
 }  // namespace tubetwin

@@ -29,7 +29,7 @@ bool Over(const Polyline& line, const Vector3& p, double reach, double z) {
 
 }  // namespace
 
-Surround::Surround(const TubeScene& scene, const PerceivedTube& tube)
+TubeObstacles::TubeObstacles(const TubeScene& scene, const PerceivedTube& tube)
     : tube_(tube), points_(Resample(tube.centerline_N, kSample_m)) {
   for (const PerceivedTube& other : scene.tubes) {
     if (other.id == tube.id) continue;
@@ -38,7 +38,7 @@ Surround::Surround(const TubeScene& scene, const PerceivedTube& tube)
   }
 }
 
-bool Surround::Covered(const Vector3& shift) const {
+bool TubeObstacles::Covered(const Vector3& shift) const {
   return std::any_of(others_.begin(), others_.end(), [&](const Other& other) {
     const double reach = tube_.radius_m + other.radius_m;
     return std::any_of(points_.begin(), points_.end(), [&](const Vector3& p) {
@@ -47,7 +47,7 @@ bool Surround::Covered(const Vector3& shift) const {
   });
 }
 
-int Surround::NewlyTouched(const Vector3& shift) const {
+int TubeObstacles::NewlyTouched(const Vector3& shift) const {
   const Polyline moving = Transformed(Translation(shift), Simplify(tube_.centerline_N, kChord_m));
   int count = 0;
   for (const Other& other : others_) {
@@ -58,8 +58,9 @@ int Surround::NewlyTouched(const Vector3& shift) const {
   return count;
 }
 
-std::vector<std::pair<double, double>> Surround::BlockedGrasps(const Vector3& way, double step_m,
-                                                               const Vector3& shift) const {
+std::vector<std::pair<double, double>> TubeObstacles::BlockedGrasps(const Vector3& way,
+                                                                    double step_m,
+                                                                    const Vector3& shift) const {
   std::vector<std::pair<double, double>> out;
   const double length = Length(tube_.centerline_N);
   for (double s = 0.0; s <= length; s += step_m) {
@@ -69,7 +70,7 @@ std::vector<std::pair<double, double>> Surround::BlockedGrasps(const Vector3& wa
   return out;
 }
 
-bool Surround::GripperMeets(const Vector3& p, const Vector3& way) const {
+bool TubeObstacles::GripperMeets(const Vector3& p, const Vector3& way) const {
   const double length = way.norm();
   for (double gone = kNearGrasp_m; gone <= length; gone += kGripperStep_m) {
     const Vector3 at = p + gone / length * way;

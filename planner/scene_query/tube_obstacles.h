@@ -8,10 +8,10 @@
 namespace tubetwin {
 
 /// One tube that shall move and all others as they lie, for questions about shifts of the one.
-class Surround {
+class TubeObstacles {
  public:
   /// `tube` is one of the scene's and must outlive this.
-  Surround(const TubeScene& scene, const PerceivedTube& tube);
+  TubeObstacles(const TubeScene& scene, const PerceivedTube& tube);
 
   /// Does any other tube lie over the moved one?
   bool Covered(const Vector3& shift) const;

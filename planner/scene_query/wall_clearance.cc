@@ -21,8 +21,8 @@ double AllowedTravel(double low, double high, double direction, double half, dou
 
 }  // namespace
 
-double AllowedSlide(const PerceivedTube& tube, const Vector3& direction, const Bin& bin,
-                    double safety_m) {
+double MaxSlideDistance(const PerceivedTube& tube, const Vector3& direction, const Bin& bin,
+                        double safety_m) {
   Vector3 low = tube.centerline_N.front(), high = low;
   for (const Vector3& p : tube.centerline_N) {
     low = low.cwiseMin(p);

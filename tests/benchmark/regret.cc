@@ -47,7 +47,7 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr int kMostSeedsPerPile = 20;
 
 // Ways of one tip have one name.
-bool SameWay(const MotionWay& a, const MotionWay& b) {
+bool SameWay(const ObjectPath& a, const ObjectPath& b) {
   return a.waypoints_N == b.waypoints_N &&
          std::equal(a.rotations_N.begin(), a.rotations_N.end(), b.rotations_N.begin(),
                     b.rotations_N.end(),

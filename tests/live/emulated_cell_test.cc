@@ -110,7 +110,7 @@ TEST_CASE("GigE Vision is served when it is asked for, and not otherwise", "[uni
     }
   }
   Bench bench("127.0.0.1", true);
-  const CellChoice::Scanner chosen = bench.cell->Reaching().cell.scanner;
+  const CellConfig::Scanner chosen = bench.cell->Reaching().cell.scanner;
   CHECK(chosen.driver == "gige");
   CHECK(chosen.host == "127.0.0.1");
   CHECK(chosen.path.empty());

@@ -38,7 +38,8 @@ class Teller {
 
 }  // namespace
 
-int RunCampaignAloud(const Campaign& campaign, CampaignRunOptions options, const Common& common) {
+int RunCampaignWithProgress(const Campaign& campaign, CampaignRunOptions options,
+                            const Common& common) {
   if (options.jobs <= 0) options.jobs = Parallelism::All().threads;
   options.program_version = TUBETWIN_VERSION;
   options.stop_requested = StopOnSignals();

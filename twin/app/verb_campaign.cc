@@ -55,7 +55,7 @@ int RunVerb(const CampaignOptions& given, const Common& common) {
   options.out_folder = common.out;
   options.jobs = given.jobs;
   options.grace_s = given.grace_s;
-  if (const int code = RunCampaignAloud(campaign, options, common); code != 0) return code;
+  if (const int code = RunCampaignWithProgress(campaign, options, common); code != 0) return code;
   if (options.shard.count > 1) return 0;
   const CampaignResult result =
       ReadShards({common.out});  // The whole campaign: no merge is needed.

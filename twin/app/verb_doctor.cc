@@ -81,7 +81,7 @@ std::string Said(const WrenchSample& sample) {
 /// Every device of the scenario's cell, read without moving anything.
 std::vector<Finding> ExamineCell(const Scenario& scenario, const std::string& folder) {
   scenario.cell.ValidateOrThrow();
-  const CellChoice& cell = scenario.cell;
+  const CellConfig& cell = scenario.cell;
   WallClock clock(scenario.rate);
   std::vector<Finding> out;
   out.push_back(Look("arm", cell.arm.driver,

@@ -34,7 +34,7 @@ int RunVerb(const ReproduceOptions& given, const Common& common) {
   CampaignRunOptions options;
   options.out_folder = common.out;
   options.jobs = given.jobs;
-  if (const int code = RunCampaignAloud(campaign, options, common); code != 0) return code;
+  if (const int code = RunCampaignWithProgress(campaign, options, common); code != 0) return code;
   const CampaignResult result = ReadShards({common.out});
   WriteMerged(result, common.out);
   const Json tables = ReproductionTables(result);

@@ -100,9 +100,9 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
                : task.keep_failure ? RoundKeep::kFailures
                                    : RoundKeep::kRows;
   RoundResult result = RunRound(scenario, round);
-  if (fs::exists(work / kHeldRoundFile)) {
+  if (fs::exists(work / kRoundCheckpointFile)) {
     MakeFolder((out / "held").string());
-    fs::rename(work / kHeldRoundFile, out / "held" / (name + ".pile.json"));
+    fs::rename(work / kRoundCheckpointFile, out / "held" / (name + ".pile.json"));
   }
 
   RoundOutput output;

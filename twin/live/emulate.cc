@@ -54,7 +54,7 @@ class EventLog {
   std::string path_;
   const EmulatedCell& cell_;
   std::string lines_;
-  ErrandThread files_;  ///< Last: ends before what it uses.
+  BackgroundTask files_;  ///< Last: ends before what it uses.
 };
 
 /// What `run --cell` needs of the scenario to find this cell.

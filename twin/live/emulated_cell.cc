@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ArmEmulatorConfig ArmAt(const CellChoice::Arm& arm, const EmulationPlaces& places) {
+ArmEmulatorConfig ArmAt(const CellConfig::Arm& arm, const EmulationPlaces& places) {
   ArmEmulatorConfig config;
   config.listen = places.listen;
   config.motion_port = places.any_ports ? 0 : arm.motion_port;
@@ -24,7 +24,7 @@ ArmEmulatorConfig ArmAt(const CellChoice::Arm& arm, const EmulationPlaces& place
   return config;
 }
 
-GripperEmulatorConfig GripperAt(const CellChoice::Gripper& gripper, const EmulationPlaces& places) {
+GripperEmulatorConfig GripperAt(const CellConfig::Gripper& gripper, const EmulationPlaces& places) {
   GripperEmulatorConfig config;
   config.listen = places.listen;
   config.port = places.any_ports ? 0 : gripper.port;
@@ -36,7 +36,7 @@ GripperEmulatorConfig GripperAt(const CellChoice::Gripper& gripper, const Emulat
   return config;
 }
 
-WristEmulatorConfig WristAt(const CellChoice::Wrist& wrist, const EmulationPlaces& places) {
+WristEmulatorConfig WristAt(const CellConfig::Wrist& wrist, const EmulationPlaces& places) {
   WristEmulatorConfig config;
   config.listen = places.listen;
   config.port = places.any_ports ? 0 : wrist.port;
@@ -137,7 +137,7 @@ ScannerEmulator& EmulatedCell::scanner() { return *impl_->scanner; }
 
 Scenario EmulatedCell::Reaching() const {
   Scenario out = impl_->scenario;
-  CellChoice& cell = out.cell;
+  CellConfig& cell = out.cell;
   // A loopback address is this emulation and nothing else; no other arm is armed by a program.
   const bool loopback = asio::ip::make_address(impl_->places.listen).is_loopback();
   cell.arm.driver = "simple_message";

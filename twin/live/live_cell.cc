@@ -48,7 +48,7 @@ bool IsTwins(const std::string& driver) { return driver == "twin"; }
 }  // namespace
 
 void RequireArmed(const Scenario& scenario) {
-  const CellChoice::Arm& arm = scenario.cell.arm;
+  const CellConfig::Arm& arm = scenario.cell.arm;
   if (arm.driver != "simple_message" || arm.armed) return;
   throw Error(ErrorKind::kConfig,
               "cell.arm.armed: is false; the arm at " + arm.host + ":" +
@@ -59,7 +59,7 @@ void RequireArmed(const Scenario& scenario) {
 
 std::unique_ptr<Arm> ConnectArm(const Scenario& scenario, const ArmModel& model,
                                 const CellClock& clock, CellPurpose purpose) {
-  const CellChoice::Arm& chosen = scenario.cell.arm;
+  const CellConfig::Arm& chosen = scenario.cell.arm;
   TT_CHECK(chosen.driver == "simple_message");
   YaskawaConfig config;
   config.host = chosen.host;
@@ -74,7 +74,7 @@ std::unique_ptr<Arm> ConnectArm(const Scenario& scenario, const ArmModel& model,
 
 std::unique_ptr<Gripper> ConnectGripper(const Scenario& scenario, const CellClock& clock,
                                         CellPurpose purpose) {
-  const CellChoice::Gripper& chosen = scenario.cell.gripper;
+  const CellConfig::Gripper& chosen = scenario.cell.gripper;
   TT_CHECK(chosen.driver == "modbus_tcp" || chosen.driver == "modbus_rtu");
   RobotiqConfig config;
   config.transport = chosen.driver == "modbus_tcp" ? "tcp" : "rtu";
@@ -88,7 +88,7 @@ std::unique_ptr<Gripper> ConnectGripper(const Scenario& scenario, const CellCloc
 }
 
 std::unique_ptr<ForceTorqueSensor> ConnectWrist(const Scenario& scenario, const CellClock& clock) {
-  const CellChoice::Wrist& chosen = scenario.cell.wrist;
+  const CellConfig::Wrist& chosen = scenario.cell.wrist;
   TT_CHECK(chosen.driver == "rdt");
   NetftConfig config;
   config.host = chosen.host;
@@ -102,7 +102,7 @@ std::unique_ptr<ForceTorqueSensor> ConnectWrist(const Scenario& scenario, const 
 
 std::unique_ptr<Scanner> ConnectScanner(const Scenario& scenario, const std::string& folder,
                                         std::function<RigidTransform()> believed_X_NS) {
-  const CellChoice::Scanner& chosen = scenario.cell.scanner;
+  const CellConfig::Scanner& chosen = scenario.cell.scanner;
   TT_CHECK(chosen.driver == "folder" || chosen.driver == "gige");
   ScannerLinkConfig config;
   config.driver = chosen.driver;
@@ -127,7 +127,7 @@ struct LiveCell::Impl {
     } else {
       bin = ScenarioBin(scenario, Bin().size_m, cell_folder);
     }
-    const CellChoice& chosen = scenario.cell;
+    const CellConfig& chosen = scenario.cell;
     if (!IsTwins(chosen.wrist.driver)) wrist = ConnectWrist(scenario, clock);
     if (!IsTwins(chosen.arm.driver)) arm = ConnectArm(scenario, Hc10(), clock, purpose);
     Arm& the_arm = arm ? *arm : twin->cell().arm;

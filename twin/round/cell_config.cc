@@ -24,11 +24,11 @@ std::vector<double> PoseNumbers(const RigidTransform& X_AB) {
   return {p.x(), p.y(), p.z(), q[0], q[1], q[2], q[3]};
 }
 
-std::array<const std::string*, 4> Drivers(const CellChoice& cell) {
+std::array<const std::string*, 4> Drivers(const CellConfig& cell) {
   return {&cell.arm.driver, &cell.gripper.driver, &cell.wrist.driver, &cell.scanner.driver};
 }
 
-int Count(const CellChoice& cell, const char* driver) {
+int Count(const CellConfig& cell, const char* driver) {
   int count = 0;
   for (const std::string* chosen : Drivers(cell)) count += *chosen == driver ? 1 : 0;
   return count;
@@ -36,7 +36,7 @@ int Count(const CellChoice& cell, const char* driver) {
 
 }  // namespace
 
-void CellChoice::Arm::Visit(ConfigVisitor& v) {
+void CellConfig::Arm::Visit(ConfigVisitor& v) {
   v.Choice("driver", "twin, a Yaskawa controller with MotoROS, or a recording", driver,
            {"twin", "simple_message", "replay"});
   v.Field("host", "address of the controller", host);
@@ -58,7 +58,7 @@ void CellChoice::Arm::Visit(ConfigVisitor& v) {
   v.Choice("visual_units", "unit of the meshes; empty: metres", visual_units, MeshUnitChoices());
 }
 
-void CellChoice::Gripper::Visit(ConfigVisitor& v) {
+void CellConfig::Gripper::Visit(ConfigVisitor& v) {
   v.Choice("driver", "twin, a Robotiq 2F-85 by serial line or network, or a recording", driver,
            {"twin", "modbus_rtu", "modbus_tcp", "replay"});
   v.Field("host", "modbus_tcp: address", host);
@@ -67,7 +67,7 @@ void CellChoice::Gripper::Visit(ConfigVisitor& v) {
   v.Field("slave", "Modbus address", slave, {1, 247});
 }
 
-void CellChoice::Wrist::Visit(ConfigVisitor& v) {
+void CellConfig::Wrist::Visit(ConfigVisitor& v) {
   v.Choice("driver", "twin, an ATI Net F/T box, or a recording", driver, {"twin", "rdt", "replay"});
   v.Field("host", "address of the box", host);
   v.Field("port", "UDP, wrenches", port, kPort);
@@ -76,7 +76,7 @@ void CellChoice::Wrist::Visit(ConfigVisitor& v) {
   v.Field("counts_per_Nm", "of the box's configuration", counts_per_Nm, {1, 1e9});
 }
 
-void CellChoice::Scanner::Visit(ConfigVisitor& v) {
+void CellConfig::Scanner::Visit(ConfigVisitor& v) {
   v.Choice("driver",
            "twin, a Photoneo PhoXi by a folder of saved scans or by GigE Vision, or a recording",
            driver, {"twin", "folder", "gige", "replay"});
@@ -88,7 +88,7 @@ void CellChoice::Scanner::Visit(ConfigVisitor& v) {
   effects.Visit(v);
 }
 
-void CellChoice::Visit(ConfigVisitor& v) {
+void CellConfig::Visit(ConfigVisitor& v) {
   v.Field("recording", "cell.rec.zst that devices with the driver replay answer from", recording);
   v.Section("arm", "the arm", arm);
   v.Section("gripper", "the gripper", gripper);
@@ -97,10 +97,10 @@ void CellChoice::Visit(ConfigVisitor& v) {
   v.Section("safety", "what stops the arm", safety);
 }
 
-bool CellChoice::IsTwin() const { return Count(*this, "twin") == 4; }
-bool CellChoice::HasTwin() const { return Count(*this, "twin") > 0; }
+bool CellConfig::IsTwin() const { return Count(*this, "twin") == 4; }
+bool CellConfig::HasTwin() const { return Count(*this, "twin") > 0; }
 
-void CellChoice::ValidateOrThrow() const {
+void CellConfig::ValidateOrThrow() const {
   const int replayed = Count(*this, "replay");
   if (replayed != 0 && replayed != 4) {
     throw Error(ErrorKind::kConfig,
@@ -118,12 +118,12 @@ void CellChoice::ValidateOrThrow() const {
   }
 }
 
-CalibrationChoice::CalibrationChoice()
+CalibrationConfig::CalibrationConfig()
     : X_FK(PoseNumbers(CellLayout().X_FK)),
       X_FE(PoseNumbers(CellLayout().X_FE)),
       X_FS(PoseNumbers(CellLayout().X_FS)) {}
 
-void CalibrationChoice::Visit(ConfigVisitor& v) {
+void CalibrationConfig::Visit(ConfigVisitor& v) {
   v.Field("X_FK", "the sensor's tool face on the flange: x y z in metres, quaternion w x y z", X_FK,
           7);
   v.Field("X_FE", "the middle between the closed pads on the flange, likewise", X_FE, 7);

@@ -11,7 +11,7 @@ namespace tubetwin {
 
 /// Which device serves each role of the cell and how it is reached: tables [cell.*]. Keys that a
 /// driver does not need are ignored by it.
-struct CellChoice {
+struct CellConfig {
   struct Arm {
     std::string driver = "twin";
     std::string host = "192.168.1.31";  ///< Factory address of the controller.
@@ -65,9 +65,9 @@ struct CellChoice {
 
 /// How the tools hang on the flange, table [calibration]: x y z in metres and the quaternion w x y
 /// z. On the twin the cell is built so; on a real cell it is what was measured.
-struct CalibrationChoice {
+struct CalibrationConfig {
   std::vector<double> X_FK, X_FE, X_FS;
-  CalibrationChoice();
+  CalibrationConfig();
   void Visit(ConfigVisitor& v);
 };
 

@@ -68,7 +68,7 @@ Scenario RecordedScenario(const CellRecordingHeader& header, const std::string& 
 
 CellRecordingHeader CellHeader(const Scenario& scenario, const std::string& resolved_toml,
                                const std::string& program_version, const Part& part,
-                               const std::optional<HeldRound>& held) {
+                               const std::optional<RoundCheckpoint>& held) {
   CellRecordingHeader header;
   header.versions = {
       {"program", program_version}, {"mujoco", EngineVersion()}, {"compiler", __VERSION__}};
@@ -82,7 +82,7 @@ CellRecordingHeader CellHeader(const Scenario& scenario, const std::string& reso
   return header;
 }
 
-HeldState HeldCycle(const HeldRound& held) {
+AttemptCheckpoint HeldCycle(const RoundCheckpoint& held) {
   return HeldStateFromJson(JsonView(held.document, held.file).Field("held").Field("cycle"));
 }
 
@@ -128,8 +128,8 @@ ReplayResult ReplayRound(const std::string& recording_path, const ReplayOptions&
       report = RunPickCycle(replay.cell(), setup, observer);
     } else {
       const Json held = Json::parse(header.held, nullptr, false);
-      report = FinishHeldAttempt(replay.cell(), setup,
-                                 HeldStateFromJson(JsonView(held, recording_path)), observer);
+      report = ResumeAttempt(replay.cell(), setup,
+                             HeldStateFromJson(JsonView(held, recording_path)), observer);
     }
     EndReplay(replay, report);
   } catch (const ReplayOver&) {

@@ -19,10 +19,10 @@ namespace tubetwin {
 /// The head of a round's cell recording. Layout and bin are the recorder's matter.
 CellRecordingHeader CellHeader(const Scenario& scenario, const std::string& resolved_toml,
                                const std::string& program_version, const Part& part,
-                               const std::optional<HeldRound>& held);
+                               const std::optional<RoundCheckpoint>& held);
 
 /// The pick cycle's part of a stored round.
-HeldState HeldCycle(const HeldRound& held);
+AttemptCheckpoint HeldCycle(const RoundCheckpoint& held);
 
 /// What the pipeline believes of an attempt, as a line of JSON without what a clock measured.
 std::string BelievedAttempt(const AttemptReport& report);

@@ -25,7 +25,7 @@ double WallNow() {
 }
 
 /// The cell and the scorer of a stored round, as they were where it was stored.
-void Resume(const HeldRound& held, TwinCell& twin, TwinRoundRecorder& recorder) {
+void Resume(const RoundCheckpoint& held, TwinCell& twin, TwinRoundRecorder& recorder) {
   const JsonView view = JsonView(held.document, held.file).Field("held");
   twin.Restore(view.Field("cell"));
   recorder.Resume(view.Field("scorer"));
@@ -53,7 +53,7 @@ struct Pipeline {
   const Scenario& scenario;
   const std::string& resolved_toml;
   const Part& part;
-  const std::optional<HeldRound>& held;
+  const std::optional<RoundCheckpoint>& held;
   const RoundOptions& options;
 };
 
@@ -76,9 +76,9 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
     recorder.tape = &*cell_recorder;
   }
   Cell& cell = cell_recorder ? cell_recorder->cell() : plain;
-  const RoundReport report =
-      pipeline.held ? FinishHeldAttempt(cell, setup, HeldCycle(*pipeline.held), recorder)
-                    : RunPickCycle(cell, setup, recorder);
+  const RoundReport report = pipeline.held
+                                 ? ResumeAttempt(cell, setup, HeldCycle(*pipeline.held), recorder)
+                                 : RunPickCycle(cell, setup, recorder);
   if (cell_recorder) EndRecording(*cell_recorder, report);
   if (options.replay != nullptr) EndReplay(*options.replay, report);
 
@@ -113,7 +113,8 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   RequireTwin(given, "this round");
   const double began = WallNow();
   Scenario scenario = given;
-  const std::optional<HeldRound> held = ReadHeldRound(scenario, options.scenario_folder);
+  const std::optional<RoundCheckpoint> held =
+      ReadRoundCheckpoint(scenario, options.scenario_folder);
   if (held) scenario.seed = held->seed;
   const Pile asked = ScenarioPile(scenario, options.scenario_folder);
   const fs::path out(options.out_folder);
@@ -142,12 +143,12 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   WriteFileAtomically((out / "cell.xml").string(), twin.ModelXml());
 
   TwinRoundRecorder recorder(twin, pile, std::move(visuals), options);
-  fs::remove(out / kHeldRoundFile);
-  recorder.on_several = [&](const HeldState& state, const Json& scorer) {
+  fs::remove(out / kRoundCheckpointFile);
+  recorder.on_several = [&](const AttemptCheckpoint& state, const Json& scorer) {
     twin.WakeAll();  // Whether it is stored or not: both go on alike.
     if (!scenario.cycle.end_at_several) return;
-    SaveHeldRound(pile, scenario.seed, twin.State(), state, scorer,
-                  (out / kHeldRoundFile).string());
+    SaveRoundCheckpoint(pile, scenario.seed, twin.State(), state, scorer,
+                        (out / kRoundCheckpointFile).string());
   };
   if (held) Resume(*held, twin, recorder);
   const Pipeline pipeline{scenario, resolved, asked.part, held, options};
@@ -168,7 +169,7 @@ RoundResult RunCellRound(Cell& cell, const Scenario& scenario, const RoundOption
   const std::string resolved = ResolvedToml(scenario);
   ClaimResultFolder(options.out_folder, resolved, options.force);
   // Of a round of the twin that was here: they would be taken for this one's.
-  for (const char* name : {"start.pile.json", "cell.xml", "recording.bin", kHeldRoundFile}) {
+  for (const char* name : {"start.pile.json", "cell.xml", "recording.bin", kRoundCheckpointFile}) {
     fs::remove(out / name);
   }
   RoundRecorder recorder(RoundScorer(), options);

@@ -48,7 +48,7 @@ struct RoundResult {
 };
 
 /// The stored moment that a round with cycle.end_at_several ends at; pile.file takes it.
-inline constexpr const char* kHeldRoundFile = "held.pile.json";
+inline constexpr const char* kRoundCheckpointFile = "held.pile.json";
 
 /// What crossed the cell's border in a round, in its folder; recording.bin is what it looked like.
 inline constexpr const char* kCellRecordingFile = "cell.rec.zst";

@@ -9,8 +9,9 @@
 namespace tubetwin {
 namespace fs = std::filesystem;
 
-void SaveHeldRound(const Pile& start, std::int64_t seed, const Json& cell, const HeldState& cycle,
-                   const Json& scorer, const std::string& path) {
+void SaveRoundCheckpoint(const Pile& start, std::int64_t seed, const Json& cell,
+                         const AttemptCheckpoint& cycle, const Json& scorer,
+                         const std::string& path) {
   const fs::path half = path + ".half";  // Never seen as a state.
   SavePile(start, half.string());
   Json document = ReadJsonFile(half.string());
@@ -20,10 +21,11 @@ void SaveHeldRound(const Pile& start, std::int64_t seed, const Json& cell, const
   WriteJsonFile(document, path);
 }
 
-std::optional<HeldRound> ReadHeldRound(const Scenario& scenario, const std::string& folder) {
+std::optional<RoundCheckpoint> ReadRoundCheckpoint(const Scenario& scenario,
+                                                   const std::string& folder) {
   const fs::path file(scenario.pile.file);
   if (file.extension() != ".json") return std::nullopt;
-  HeldRound held;
+  RoundCheckpoint held;
   held.file = (file.is_relative() ? fs::path(folder) / file : file).string();
   held.document = ReadJsonFile(held.file);
   if (!held.document.is_object() || !held.document.contains("held")) return std::nullopt;

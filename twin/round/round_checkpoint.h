@@ -14,19 +14,21 @@ namespace tubetwin {
 
 /// A round stored where several tubes hang in the fingers: a pile.json (the pile at the round's
 /// start, which the cell is built from) with one more key, `held`: {seed, cell, cycle, scorer}.
-struct HeldRound {
+struct RoundCheckpoint {
   std::int64_t seed = 0;  ///< Of the stored round; physics and noise are drawn from it.
   std::string file;       ///< For messages.
   Json document;
 };
 
 /// Writes such a file.
-void SaveHeldRound(const Pile& start, std::int64_t seed, const Json& cell, const HeldState& cycle,
-                   const Json& scorer, const std::string& path);
+void SaveRoundCheckpoint(const Pile& start, std::int64_t seed, const Json& cell,
+                         const AttemptCheckpoint& cycle, const Json& scorer,
+                         const std::string& path);
 
 /// The stored round that the scenario's pile file is, or nothing for any other pile or none.
 /// Throws Error(kBadData).
-std::optional<HeldRound> ReadHeldRound(const Scenario& scenario, const std::string& folder);
+std::optional<RoundCheckpoint> ReadRoundCheckpoint(const Scenario& scenario,
+                                                   const std::string& folder);
 
 /// The files that rounds start from when the scenario's `pile.file` is a folder: its *.json by
 /// name, round r of a campaign takes the r-th. Empty when it is no folder.

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "models/base/cloud/cloud.h"
-#include "twin/render/thinned_points.h"
 #include "models/base/json.h"
 #include "twin/cell/truth.h"
+#include "twin/render/thinned_points.h"
 #include "twin/round/replay_round.h"
 
 namespace tubetwin {

@@ -54,14 +54,14 @@ class TwinRoundRecorder : public RoundRecorder {
   void OnStep(const std::string& caption) override;
   void OnScene(const TubeScene& scene, const PickPlan* plan) override;
   void OnReference(const Wrench& reference_K) override;
-  void OnSeveral(const HeldState& state) override { on_several(state, scorer_.State()); }
+  void OnSeveral(const AttemptCheckpoint& state) override { on_several(state, scorer_.State()); }
   void OnAttemptEnd(const AttemptReport& report) override;
 
   void Resume(const JsonView& scorer) { scorer_.Restore(scorer); }
   const Recording& recording() const { return recording_; }
 
   /// Told of the moment when several hang, with the scorer's state.
-  std::function<void(const HeldState&, const Json&)> on_several;
+  std::function<void(const AttemptCheckpoint&, const Json&)> on_several;
 
  private:
   void OnFailure(const std::string& folder) override;

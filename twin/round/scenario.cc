@@ -39,7 +39,7 @@ BinMesh BinOfMesh(const Scenario& scenario, const std::string& folder) {
 
 }  // namespace
 
-void Scenario::PileChoice::Visit(ConfigVisitor& v) {
+void Scenario::PileConfig::Visit(ConfigVisitor& v) {
   v.Field("file",
           "pile to start from (pile.json, CSV or the public set's text), or a moment that "
           "cycle.end_at_several stored; in campaigns a folder of them too, one for each round; "
@@ -51,7 +51,7 @@ void Scenario::PileChoice::Visit(ConfigVisitor& v) {
            {"dropped", "stirred", "threaded"});
 }
 
-void Scenario::BinChoice::Visit(ConfigVisitor& v) {
+void Scenario::BinConfig::Visit(ConfigVisitor& v) {
   v.Field("size_m", "long, short, wall height in metres; empty: the pile's, else 0.77 0.58 0.09",
           size_m, 0, {0.01, 3.0});
   v.Field("mesh", "STL, OBJ or PLY of the bin, z upwards: gives size_m and looks", mesh);
@@ -59,7 +59,7 @@ void Scenario::BinChoice::Visit(ConfigVisitor& v) {
   v.Field("X_BN", "floor centre x y z in metres and yaw in degrees, in the robot's base", X_BN, 4);
 }
 
-void Scenario::PartChoice::Visit(ConfigVisitor& v) {
+void Scenario::PartConfig::Visit(ConfigVisitor& v) {
   v.Field("name", "what lies in the bin of this cell: part name or part file; [pile] part wins",
           name);
 }

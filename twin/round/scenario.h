@@ -22,7 +22,7 @@ struct Scenario {
   std::int64_t seed = 1;
   std::string profile = "best";
 
-  struct PileChoice {
+  struct PileConfig {
     std::string file;  ///< Empty: generate. Relative to the scenario file.
     std::string part;  ///< Empty: what the file says, else pvc_a.
     int count = 7;
@@ -30,7 +30,7 @@ struct Scenario {
     void Visit(ConfigVisitor& v);
   } pile;
 
-  struct BinChoice {
+  struct BinConfig {
     std::vector<double> size_m;  ///< Empty: what the pile file says, else 0.77 x 0.58 x 0.09.
     std::string mesh;            ///< Gives size_m, and the bin's looks in pictures; empty: none.
     std::string mesh_units;      ///< As ScaleToMetres takes it.
@@ -48,13 +48,13 @@ struct Scenario {
 
   /// The cell's own, where no pile says them: what lies in the bin, where tools hang, how fast the
   /// devices' clocks run against the wall's (emulated ones).
-  struct PartChoice {
+  struct PartConfig {
     std::string name;  ///< Part name or file; empty: what [pile] says.
     void Visit(ConfigVisitor& v);
   } part;
-  CalibrationChoice calibration;
+  CalibrationConfig calibration;
   double rate = 1.0;
-  CellChoice cell;
+  CellConfig cell;
 
   void Visit(ConfigVisitor& v);
 };

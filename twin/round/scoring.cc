@@ -28,7 +28,7 @@ Json GraspJson(const PickPlan& plan) {
 
 Json MotionJson(const PickPlan& plan) {
   Json json = {{"name", plan.motion.name}};
-  AddWay(plan.motion, json);
+  AddObjectPath(plan.motion, json);
   return json;
 }
 

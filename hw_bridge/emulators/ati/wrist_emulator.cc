@@ -61,7 +61,7 @@ void WristEmulator::Tick(TimeNs now) {
   if (link_.freeze) return;
   TakeRequests(now);
   if (streaming_) Stream(now);
-  outbox_.Deliver(now, [this](std::uint64_t, const std::string& datagram) {
+  send_queue_.Deliver(now, [this](std::uint64_t, const std::string& datagram) {
     asio::error_code lost;  // A client that is gone, a full queue: so is the datagram.
     udp_->socket.send_to(asio::buffer(datagram), udp_->client, 0, lost);
   });
@@ -140,7 +140,7 @@ void WristEmulator::SendPending(TimeNs now) {
   if (pending_.empty()) return;
   std::string datagram = std::exchange(pending_, {});
   if (link_.corrupt) datagram.pop_back();
-  outbox_.Put(link_, now, 0, std::move(datagram));
+  send_queue_.Put(link_, now, 0, std::move(datagram));
 }
 
 std::uint32_t WristEmulator::Status(const WrenchSample& sample) const {

@@ -66,7 +66,7 @@ class WristEmulator : public Emulator {
   std::unique_ptr<Udp> udp_;
   TcpPort http_;
   LinkFaults link_;
-  Outbox outbox_;
+  SendQueue send_queue_;
 
   bool streaming_ = false, buffered_ = false;
   TimeNs began_{0};           ///< Of the stream.

@@ -60,7 +60,7 @@ class ScannerFolderEmulator : public ScannerEmulator {
   std::string problem_;
   std::uint64_t found_ = 0;  ///< Newest trigger; 0: none.
 
-  ErrandThread files_;  ///< Last: ends before what it uses.
+  BackgroundTask files_;  ///< Last: ends before what it uses.
 };
 
 }  // namespace tubetwin

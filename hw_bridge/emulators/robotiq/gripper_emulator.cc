@@ -50,7 +50,7 @@ void GripperEmulator::ServeTcp(TimeNs now) {
   tcp_->Poll(now, [&](std::uint64_t client, std::string& received) {
     return Answer(now, client, received) ? TcpPort::Verdict::kKeep : TcpPort::Verdict::kClose;
   });
-  outbox_.Deliver(
+  send_queue_.Deliver(
       now, [this](std::uint64_t client, const std::string& answer) { tcp_->Send(client, answer); });
 }
 
@@ -63,7 +63,8 @@ void GripperEmulator::ServeRtu(TimeNs now) {
   } else if (now - rtu_heard_ > kEndOfFrame) {
     rtu_received_.clear();
   }
-  outbox_.Deliver(now, [this](std::uint64_t, const std::string& answer) { rtu_->Write(answer); });
+  send_queue_.Deliver(now,
+                      [this](std::uint64_t, const std::string& answer) { rtu_->Write(answer); });
 }
 
 bool GripperEmulator::Answer(TimeNs now, std::uint64_t client, std::string& received) {
@@ -77,7 +78,7 @@ bool GripperEmulator::Answer(TimeNs now, std::uint64_t client, std::string& rece
       case ModbusSlave::Found::kRequest:
         ++requests_;
         controller_.Heard(now);
-        if (!answer.empty()) outbox_.Put(link_, now, client, std::move(answer));
+        if (!answer.empty()) send_queue_.Put(link_, now, client, std::move(answer));
         break;
       case ModbusSlave::Found::kNothing:
       case ModbusSlave::Found::kIgnored:

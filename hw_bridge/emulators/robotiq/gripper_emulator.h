@@ -50,7 +50,7 @@ class GripperEmulator : public Emulator {
   GripperController controller_;
   ModbusSlave slave_;
   LinkFaults link_;
-  Outbox outbox_;
+  SendQueue send_queue_;
   std::unique_ptr<TcpPort> tcp_;
   std::unique_ptr<SerialPty> rtu_;
   std::string rtu_received_;
