@@ -95,7 +95,7 @@ Json ToJson(const AttemptCheckpoint& state) {
               {"opening_m", state.opening_m}};
 }
 
-AttemptCheckpoint HeldStateFromJson(const JsonView& view) {
+AttemptCheckpoint AttemptCheckpointFromJson(const JsonView& view) {
   AttemptCheckpoint state;
   AttemptReport& report = state.report;
   report.attempt = static_cast<int>(view.Field("attempt").AsInteger());

@@ -24,6 +24,6 @@ struct AttemptCheckpoint {
 
 /// All numbers come back bit by bit. Reading throws Error(kBadData).
 Json ToJson(const AttemptCheckpoint& state);
-AttemptCheckpoint HeldStateFromJson(const JsonView& view);
+AttemptCheckpoint AttemptCheckpointFromJson(const JsonView& view);
 
 }  // namespace tubetwin

@@ -1,40 +1,8 @@
 #include "planner/cycle/attempt_report.h"
 
-#include "models/base/error.h"
 #include "models/base/json.h"
 
 namespace tubetwin {
-
-const char* ToString(ResolutionStrategy strategy) {
-  switch (strategy) {
-    case ResolutionStrategy::kNone:
-      return "none";
-    case ResolutionStrategy::kPlus45:
-      return "plus45";
-    case ResolutionStrategy::kPlus45Minus45:
-      return "plus45_minus45";
-    case ResolutionStrategy::kPerpendicular:
-      return "perpendicular";
-    case ResolutionStrategy::kPutback:
-      return "putback";
-  }
-  return "none";
-}
-
-const std::vector<std::string>& ResolutionStrategyNames() {
-  static const std::vector<std::string> names = {"none", "plus45", "plus45_minus45",
-                                                 "perpendicular", "putback"};
-  return names;
-}
-
-ResolutionStrategy ResolutionStrategyFromName(const std::string& name) {
-  for (const auto strategy :
-       {ResolutionStrategy::kNone, ResolutionStrategy::kPlus45, ResolutionStrategy::kPlus45Minus45,
-        ResolutionStrategy::kPerpendicular, ResolutionStrategy::kPutback}) {
-    if (name == ToString(strategy)) return strategy;
-  }
-  throw LogicError("no resolution strategy is called '" + name + "'");
-}
 
 const char* ToString(AttemptOutcome outcome) {
   switch (outcome) {

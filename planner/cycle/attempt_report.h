@@ -6,15 +6,9 @@
 
 #include "perception/scene/tube_scene.h"
 #include "planner/grasp/detection.h"
-#include "planner/pick/plan.h"
+#include "planner/pick/pick_plan.h"
 
 namespace tubetwin {
-
-enum class ResolutionStrategy { kNone, kPlus45, kPlus45Minus45, kPerpendicular, kPutback };
-const char* ToString(ResolutionStrategy strategy);
-const std::vector<std::string>& ResolutionStrategyNames();
-/// Precondition: one of ResolutionStrategyNames().
-ResolutionStrategy ResolutionStrategyFromName(const std::string& name);
 
 /// How an attempt ended, as the pipeline believes.
 enum class AttemptOutcome { kPlaced, kPutBack, kNothingHeld, kDropped, kNoPlan, kFault };
@@ -43,7 +37,7 @@ struct AttemptReport {
   std::optional<Detection> first_weighing;  ///< After the 3 cm lift.
   std::optional<Detection> detection;       ///< The decision after the whole motion.
   bool resolution_used = false;
-  ResolutionStrategy strategy = ResolutionStrategy::kNone;
+  std::string strategy = "none";  ///< Name of the resolution strategy that the round has.
   std::optional<HeldOutcome> resolution_outcome;
   AttemptOutcome outcome = AttemptOutcome::kNoPlan;
   /// Where the tube was meant to lie: its centre and direction on the tray, frame T.

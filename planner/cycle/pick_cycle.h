@@ -1,55 +1,20 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "hw_bridge/cell/cell.h"
 #include "models/base/parallel.h"
 #include "perception/perceive.h"
 #include "planner/cycle/attempt_checkpoint.h"
 #include "planner/cycle/attempt_report.h"
+#include "planner/cycle/cycle_config.h"
+#include "planner/pick/pick_plan.h"
+#include "planner/resolution/strategy.h"
 
 namespace tubetwin {
-
-/// Config table [scan].
-struct ScanConfig {
-  int views = 8;                        ///< Of the default poses, from the first.
-  std::string resolution = "1032x772";  ///< Or "2064x1544".
-  /// One view straight down on the bin's centre from so high over its floor, image along the long
-  /// side, in place of the scan poses; 0: the scan poses.
-  double overhead_m = 0.0;
-  bool rescan_all = false;  ///< Later scans of a round look everywhere again.
-  void Visit(ConfigVisitor& v);
-};
-
-/// Config table [resolution]: what is done when several tubes hang in the fingers.
-struct ResolutionConfig {
-  std::string strategy = "plus45_minus45";
-  double angle_deg = 45.0;
-  double speed_deg_s = 20.0;
-  void Visit(ConfigVisitor& v);
-};
-
-/// Config table [cycle]: speeds, forces and waits of the pick cycle.
-struct CycleConfig {
-  double transfer_speed_m_s = 0.6, transfer_acceleration_m_s2 = 1.0;
-  double approach_speed_m_s = 0.20, guarded_speed_m_s = 0.02;
-  double guard_force_N = 8.0;
-  double grip_force_N = 60.0, grip_speed_m_s = 0.10;
-  double approach_m = 0.08;  ///< Height over the grasp where the fast part ends.
-  double guarded_m = 0.010;  ///< Last part of the descent, guarded.
-  double first_lift_m = 0.03;
-  double settle_s = 2.0;  ///< At most, until the load stands still after a motion.
-  double weigh_window_s = 0.2;
-  double tolerance_share = 0.5;  ///< F_tol in tube weights.
-  /// The round ends where several tubes hang in the fingers, once the observer has heard of it.
-  bool end_at_several = false;
-  int attempts_per_tube = 4;  ///< The round ends after this many times the first count, plus ten.
-  void Visit(ConfigVisitor& v);
-};
-
-/// Where a round looks from, X_BS.
-std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const Bin& bin);
 
 /// Hears what the cycle does; for recordings, progress and scoring. Default: nothing.
 class CycleObserver {
@@ -79,6 +44,10 @@ struct PickCycleSetup {
   ScanConfig scan;
   ResolutionConfig resolution;
   CycleConfig cycle;
+  /// In place of the registry's strategy that `resolution` names.
+  std::optional<ResolutionStrategy> strategy;
+  /// In place of the registry's motions that `planner` names.
+  std::optional<std::vector<ExtractionMotion>> motions;
   std::uint64_t seed = 1;
   EvaluateFunction evaluate;
   Parallelism parallelism;

@@ -1,7 +1,9 @@
+#include "planner/cycle/view_scheduler.h"
+
 #include <algorithm>
+#include <cmath>
 
 #include "models/base/error.h"
-#include "planner/cycle/cycle_context.h"
 
 namespace tubetwin {
 namespace {
@@ -11,15 +13,28 @@ constexpr double kTouchMargin_m = 0.010;
 /// Half field of view of the scanner as tangents, with room for what a tube may have moved.
 constexpr double kFieldX = 0.5 * 2064.0 / 2534.0 + 0.12, kFieldY = 0.5 * 1544.0 / 2534.0 + 0.12;
 
-/// A scan that fails is asked for once more.
-OrganizedCloud ScanOrAgain(CycleContext& c) {
-  try {
-    return Scan(c.cell);
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::kDevice) throw;
-    c.observer.OnStep(std::string("scanning again: ") + error.what());
+/// Whether each tube of a scene may have moved when one was taken: it and what touches it, and what
+/// touches that.
+std::vector<bool> MovedWith(const std::vector<PerceivedTube>& tubes, int tube_id) {
+  std::vector<bool> moved(tubes.size(), false);
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < tubes.size(); ++i) {
+    if (tubes[i].id != tube_id) continue;
+    moved[i] = true;
+    open.push_back(i);
   }
-  return Scan(c.cell);
+  while (!open.empty()) {
+    const PerceivedTube& tube = tubes[open.back()];
+    open.pop_back();
+    for (std::size_t j = 0; j < tubes.size(); ++j) {
+      if (moved[j]) continue;
+      const double reach_m = tube.radius_m + tubes[j].radius_m + kTouchMargin_m;
+      if (ClosestOfLines(tube.centerline_N, tubes[j].centerline_N).distance_m >= reach_m) continue;
+      moved[j] = true;
+      open.push_back(j);
+    }
+  }
+  return moved;
 }
 
 }  // namespace
@@ -27,84 +42,106 @@ OrganizedCloud ScanOrAgain(CycleContext& c) {
 ViewScheduler::ViewScheduler(CycleContext& context) : context_(context) {
   poses_BS_ = ScanPoses(context.setup.scan, context.cell.bin);
   views_.resize(poses_BS_.size());
-  taken_last_.assign(poses_BS_.size(), false);
+  ages_.assign(poses_BS_.size(), Age::kNever);
+  taken_.assign(poses_BS_.size(), false);
   MarkAll();
 }
 
 void ViewScheduler::MarkAll() { marked_.assign(poses_BS_.size(), true); }
 
 bool ViewScheduler::all_fresh() const {
-  return std::find(taken_last_.begin(), taken_last_.end(), false) == taken_last_.end();
+  return std::all_of(ages_.begin(), ages_.end(),
+                     [](Age age) { return age == Age::kFresh || age == Age::kUnreachable; });
+}
+
+std::vector<OrganizedCloud> ViewScheduler::clouds() const {
+  std::vector<OrganizedCloud> out;
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    if (taken_[v]) out.push_back(views_[v]);
+  }
+  return out;
 }
 
 bool ViewScheduler::Sees(std::size_t view, const Polyline& line_N) const {
   const RigidTransform X_SN = poses_BS_[view].inverse() * context_.cell.bin.X_BN;
-  for (const Vector3& p_N : line_N) {
+  return std::any_of(line_N.begin(), line_N.end(), [&](const Vector3& p_N) {
     const Vector3 p_S = X_SN * p_N;
-    if (std::abs(p_S.x()) < kFieldX * p_S.z() && std::abs(p_S.y()) < kFieldY * p_S.z()) return true;
-  }
-  return false;
+    return std::abs(p_S.x()) < kFieldX * p_S.z() && std::abs(p_S.y()) < kFieldY * p_S.z();
+  });
 }
 
 void ViewScheduler::MarkAround(int tube_id) {
   if (context_.setup.scan.rescan_all) return MarkAll();
-  const auto& tubes = scene_.tubes;
-  std::vector<bool> moved(tubes.size(), false);
-  std::vector<std::size_t> open;
-  for (std::size_t i = 0; i < tubes.size(); ++i) {
-    if (tubes[i].id == tube_id) {
-      moved[i] = true;
-      open.push_back(i);
-    }
-  }
-  while (!open.empty()) {
-    const std::size_t i = open.back();
-    open.pop_back();
-    for (std::size_t j = 0; j < tubes.size(); ++j) {
-      if (moved[j]) continue;
-      const double reach = tubes[i].radius_m + tubes[j].radius_m + kTouchMargin_m;
-      if (ClosestOfLines(tubes[i].centerline_N, tubes[j].centerline_N).distance_m < reach) {
-        moved[j] = true;
-        open.push_back(j);
-      }
-    }
-  }
+  const std::vector<bool> moved = MovedWith(scene_.tubes, tube_id);
   for (std::size_t v = 0; v < poses_BS_.size(); ++v) {
-    for (std::size_t i = 0; i < tubes.size(); ++i) {
-      if (moved[i] && Sees(v, tubes[i].centerline_N)) marked_[v] = true;
+    for (std::size_t i = 0; i < scene_.tubes.size(); ++i) {
+      if (moved[i] && Sees(v, scene_.tubes[i].centerline_N)) marked_[v] = true;
     }
   }
 }
 
-const TubeScene& ViewScheduler::Look() {
-  Cell& cell = context_.cell;
-  const CycleConfig& speeds = context_.setup.cycle;
-  const RigidTransform X_SE = cell.layout.X_FS.inverse() * cell.layout.X_FE;
-  bool first = true;
-  for (std::size_t v = 0; v < poses_BS_.size(); ++v) {
-    taken_last_[v] = marked_[v];
-    if (!marked_[v]) continue;
-    {
-      const CycleContext::Timed timed(context_, &AttemptReport::SimTime::move);
-      const RigidTransform X_BE = poses_BS_[v] * X_SE;
-      if (first) {
-        context_.executor.Transfer(X_BE, speeds.transfer_speed_m_s,
-                                   speeds.transfer_acceleration_m_s2, true);
-      } else {
-        context_.executor.Joint(X_BE, true);
+StepOutcome ViewScheduler::GoTo(std::size_t view, bool first) {
+  const CycleConfig& config = context_.setup.cycle;
+  const RigidTransform X_SE = context_.cell.layout.X_FS.inverse() * context_.cell.layout.X_FE;
+  // From one view to the next the joints go straight: views lie at one height over all else.
+  const MotionOptions options =
+      first ? NearGrasp(config.transfer_speed_m_s, config.transfer_acceleration_m_s2)
+            : MotionOptions();
+  PathBuilder path = context_.Path();
+  path.Add("to view " + std::to_string(view + 1), options,
+           Transfer{poses_BS_[view] * X_SE, /*either_yaw=*/true, /*direct=*/!first});
+  return context_.CheckAndRun(path.path());
+}
+
+StepOutcome ViewScheduler::Take(std::size_t view) {
+  const CycleContext::Timed timed(context_, &AttemptReport::SimTime::scan);
+  // A scan that fails is asked for once more.
+  for (int attempt = 0;; ++attempt) {
+    try {
+      views_[view] = Scan(context_.cell);
+      taken_[view] = true;
+      return {};
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kDevice) throw;
+      if (attempt > 0) {
+        return {StepOutcome::Status::kTrouble, WaitOutcome::Status::kDone, error.what()};
       }
-      first = false;
+      context_.observer.OnStep(std::string("scanning again: ") + error.what());
     }
-    const CycleContext::Timed timed(context_, &AttemptReport::SimTime::scan);
-    views_[v] = ScanOrAgain(context_);
+  }
+}
+
+StepOutcome ViewScheduler::Look() {
+  bool first = true;
+  StepOutcome refused;
+  for (std::size_t v = 0; v < poses_BS_.size(); ++v) {
+    if (ages_[v] == Age::kFresh) ages_[v] = Age::kOld;
+    if (!marked_[v]) continue;
+    StepOutcome step = GoTo(v, first);
+    if (step.refused()) {
+      ages_[v] = Age::kUnreachable;
+      refused = step;
+      continue;
+    }
+    if (!step.ok()) return step;
+    first = false;
+    step = Take(v);
+    if (!step.ok()) return step;
+    ages_[v] = Age::kFresh;
   }
   marked_.assign(poses_BS_.size(), false);
+  if (first && refused.refused()) return refused;
+  Model();
+  return {};
+}
+
+void ViewScheduler::Model() {
   const double began = ComputeClock_s();
-  context_.observer.OnClouds(views_);
-  scene_ = Perceive(views_, context_.setup.part, cell.bin, context_.setup.perception,
+  const std::vector<OrganizedCloud> clouds = this->clouds();
+  context_.observer.OnClouds(clouds);
+  scene_ = Perceive(clouds, context_.setup.part, context_.cell.bin, context_.setup.perception,
                     context_.setup.parallelism);
   context_.report.compute_s.modelling += ComputeClock_s() - began;
-  return scene_;
 }
 
 }  // namespace tubetwin

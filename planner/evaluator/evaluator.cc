@@ -247,7 +247,7 @@ class Evaluation {
       if (scenes_[k] != nullptr) return;
       const SampleDraw draw = DrawSample(part_, static_cast<int>(scene_.tubes.size()), sample,
                                          request_.seed, options_.config);
-      scenes_[k] = std::make_shared<const RolloutScene>(scene_, part_, bin_, draw, options_.config);
+      scenes_[k] = std::make_shared<const RolloutScene>(scene_, part_, bin_, draw, options_);
       cache_.Keep(key, sample, scenes_[k]);
     });
   }

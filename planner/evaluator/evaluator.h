@@ -2,7 +2,8 @@
 
 #include "models/base/config/config.h"
 #include "models/base/parallel.h"
-#include "planner/extraction/motion_types.h"
+#include "planner/grasp/gripper_boxes.h"
+#include "planner/pick/evaluation.h"
 
 namespace tubetwin {
 
@@ -24,6 +25,7 @@ struct EvaluatorConfig {
 struct EvaluatorOptions {
   Parallelism parallelism;
   EvaluatorConfig config;
+  GripperGeometry gripper;  ///< What the hand's fingers and body fill.
 };
 
 /// Roll-outs in MuJoCo of the perceived tubes (Leão et al. 2020, section 3.3.2, with a
@@ -56,6 +58,6 @@ struct EvaluatorOptions {
 /// count nor on the order of candidates. Throws Error(kBadData) for a tube that is not in the
 /// scene, a motion without waypoints, longer than max_sim_s, not finite or turned by more than 80
 /// degrees about N's y axis, a place outside the tube; LogicError for grasp_at_m of another size.
-EvaluateFunction MakeEvaluator(const EvaluatorOptions& options = {});
+EvaluateFunction MakeEvaluator(const EvaluatorOptions& options);
 
 }  // namespace tubetwin

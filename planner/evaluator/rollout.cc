@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "models/base/error.h"
-#include "planner/extraction/more_motions.h"
 #include "scenes/engine/engine_error.h"
 
 namespace tubetwin {
@@ -259,7 +258,7 @@ RolloutOutcome RollOut(const RolloutScene& scene, int index, double grip_share,
   const double dt = model.opt.timestep, rising_from_s = profile.RisingFrom();
   const double turned_until_s = profile.TurnedOverUntil();
   const double lowest_turned_m = LowestTurned(scene.tubes()[index], motion);
-  const bool may_give_up = !IsTip(motion);  // What a tip sheds counts less in the end.
+  const bool may_give_up = !ShedsByTilting(motion);  // What a tip sheds counts less in the end.
   const int steps = static_cast<int>(std::ceil((profile.duration_s() + config.hold_s) / dt));
   double saturated_s = 0.0, rise_m = 0.0;
   Lifted lifted(scene, index);

@@ -90,14 +90,15 @@ SampleDraw DrawSample(const Part& part, int tubes, int sample, std::uint64_t see
 }
 
 RolloutScene::RolloutScene(const TubeScene& scene, const Part& part, const Bin& bin,
-                           const SampleDraw& draw, const EvaluatorConfig& config)
+                           const SampleDraw& draw, const EvaluatorOptions& options)
     : RolloutScene(TubesToBuild(scene, part, draw), part, bin, draw.friction,
-                   draw.bending_stiffness_Nm2, config) {}
+                   draw.bending_stiffness_Nm2, options) {}
 
 RolloutScene::RolloutScene(const std::vector<PileTube>& tubes, const Part& part, const Bin& bin,
                            double friction, double bending_stiffness_Nm2,
-                           const EvaluatorConfig& config)
+                           const EvaluatorOptions& options)
     : bin_(bin) {
+  const EvaluatorConfig& config = options.config;
   EngineOptions engine;
   engine.timestep_s = config.timestep_s;
   engine.impratio = 10.0;
@@ -114,14 +115,14 @@ RolloutScene::RolloutScene(const std::vector<PileTube>& tubes, const Part& part,
   RoundPhysics physics = NominalPhysics(part);
   physics.tube_friction = friction;
   physics.bending_stiffness_Nm2 = bending_stiffness_Nm2;
-  TubeBodyOptions options = MakeTubeBodyOptions(part, physics, RigidTransform::Identity());
-  options.contact_time_s = contact_s;
+  TubeBodyOptions tube_options = MakeTubeBodyOptions(part, physics, RigidTransform::Identity());
+  tube_options.contact_time_s = contact_s;
   tubes_.reserve(tubes.size());
   for (std::size_t i = 0; i < tubes.size(); ++i) {
-    tubes_.emplace_back(*spec, "tube" + std::to_string(i), tubes[i], options);
+    tubes_.emplace_back(*spec, "tube" + std::to_string(i), tubes[i], tube_options);
   }
   AddHand(*spec, config.hand_force_N);
-  AddFingers(*mjs_findBody(spec.get(), "hand"), part.radius_m, contact_s);
+  AddFingers(*mjs_findBody(spec.get(), "hand"), options.gripper, part.radius_m, contact_s);
   model_ = Compile(*spec, "evaluator");
   for (TubeBody& tube : tubes_) tube.Bind(*model_);
   BindHand();
@@ -174,9 +175,10 @@ void RolloutScene::AddHand(mjSpec& spec, double force_N) {
 }
 
 // The gripper as it comes down vertically, closed on a tube that lies on the floor.
-void RolloutScene::AddFingers(mjsBody& hand, double radius_m, double contact_s) {
-  const double height_m = GraspHeightOverAxis(radius_m);
-  const GripperBoxes boxes = MakeGripperBoxes(2.0 * radius_m, radius_m, height_m);
+void RolloutScene::AddFingers(mjsBody& hand, const GripperGeometry& gripper, double radius_m,
+                              double contact_s) {
+  const double height_m = GraspHeightOverAxis(radius_m, gripper.spec);
+  const GripperBoxes boxes = MakeGripperBoxes(gripper, 2.0 * radius_m, radius_m, height_m);
   const RigidTransform X_HandE =
       Translation(0, 0, height_m) * Eigen::AngleAxisd(kPi, Vector3::UnitX());
   for (const OrientedBox& box_E : {boxes.finger[0], boxes.finger[1], boxes.chassis, boxes.base}) {

@@ -29,10 +29,10 @@ class RolloutScene {
   static constexpr int kHandAxes = 6;  ///< Slides x y z, then hinges x y z.
 
   RolloutScene(const TubeScene& scene, const Part& part, const Bin& bin, const SampleDraw& draw,
-               const EvaluatorConfig& config);
+               const EvaluatorOptions& options);
   /// Tubes as they are, with masses and rest shapes, under one friction and bending stiffness.
   RolloutScene(const std::vector<PileTube>& tubes, const Part& part, const Bin& bin,
-               double friction, double bending_stiffness_Nm2, const EvaluatorConfig& config);
+               double friction, double bending_stiffness_Nm2, const EvaluatorOptions& options);
 
   const mjModel& model() const { return *model_; }
   StepStatus status() const { return status_; }  ///< Of settling; the rest holds only when kOk.
@@ -56,7 +56,7 @@ class RolloutScene {
 
  private:
   void AddHand(mjSpec& spec, double force_N);
-  void AddFingers(mjsBody& hand, double radius_m, double contact_s);
+  void AddFingers(mjsBody& hand, const GripperGeometry& gripper, double radius_m, double contact_s);
   void BindHand();
   void Settle();
   void MeasureCreep(mjData& data);

@@ -17,10 +17,10 @@ constexpr double kOwnReach_m = 0.045;  // The tube itself is an obstacle from th
 constexpr double kTangentWindow_m = 0.03;
 constexpr double kGripperReach_m = 0.20;  // Of the gripper's body from E.
 constexpr double kTurnStep_m = 0.01;      // Between poses of a motion that turns.
-constexpr double kMostTilt_deg = 35.0;
-constexpr double kFloorRoom_m = 0.002;  // Between a tilted finger and the floor.
-constexpr double kLeastHold_m = 0.005;  // Of the pads below the tube's axis.
-constexpr double kNearEnd_m = 0.012;    // Just more than half a pad.
+constexpr double kMaxTilt_deg = 35.0;
+constexpr double kFloorClearance_m = 0.002;  // Between a tilted finger and the floor.
+constexpr double kMinHold_m = 0.005;         // Of the pads below the tube's axis.
+constexpr double kNearEnd_m = 0.012;         // Just more than half a pad.
 // Room between tube and pad on either side, metres, from comfortable to what arm and camera need.
 constexpr std::array<double, 6> kSideRoom_m = {0.020, 0.015, 0.011, 0.008, 0.006, 0.0045};
 
@@ -30,40 +30,38 @@ std::string Millimetres(double length_m) {
 
 std::string SiteName(double at_m) { return "at " + Number(std::round(at_m * 1e3) / 1e3) + " m"; }
 
-// Everything that a grasp of one tube must keep away from.
-struct Surroundings {
-  const PerceivedTube& tube;
-  const Bin& bin;
-  const PlannerConfig& config;
-  struct Obstacle {
-    Polyline line;
-    double radius_m;
-    std::string name;
-  };
-  std::vector<Obstacle> others;
-  std::vector<double> covered_at_m;  // Arc lengths of crossings under another tube.
-  double cover_m = 0.0;              // Distance to keep from them.
-  const std::vector<Vector3>& points_N;
+// A tube, or a part of the grasped one, that the gripper must keep away from.
+struct GraspObstacle {
+  Polyline line;
+  double radius_m;
+  std::string name;
 };
 
-Surroundings SurroundingsOf(const TubeScene& scene, const PerceivedTube& tube,
-                            const std::vector<Vector3>& points_N, const Bin& bin,
-                            const PlannerConfig& config) {
-  Surroundings around{tube, bin, config, {}, {}, 2.0 * tube.radius_m, points_N};
-  for (const PerceivedTube& other : scene.tubes) {
+// Everything that a grasp of one tube must keep away from.
+struct GraspObstacles {
+  const GraspInput& input;
+  const PerceivedTube& tube;
+  std::vector<GraspObstacle> others;
+  std::vector<double> covered_at_m;  // Arc lengths of crossings under another tube.
+  double cover_m = 0.0;              // Distance to keep from them.
+};
+
+GraspObstacles ObstaclesOf(const GraspInput& input, const PerceivedTube& tube) {
+  GraspObstacles around{input, tube, {}, {}, 2.0 * tube.radius_m};
+  for (const PerceivedTube& other : input.scene.tubes) {
     if (other.id == tube.id) continue;
     around.others.push_back(
         {other.centerline_N, other.radius_m, "tube " + std::to_string(other.id)});
   }
-  for (const Crossing& crossing : scene.crossings) {
+  for (const Crossing& crossing : input.scene.crossings) {
     if (crossing.under == tube.id) around.covered_at_m.push_back(crossing.at_under_m);
   }
   return around;
 }
 
 // Parts of the tube itself that are too far along it to pass between the pads.
-std::vector<Surroundings::Obstacle> OwnObstacles(const PerceivedTube& tube, double at_m) {
-  std::vector<Surroundings::Obstacle> own;
+std::vector<GraspObstacle> OwnObstacles(const PerceivedTube& tube, double at_m) {
+  std::vector<GraspObstacle> own;
   const double length = Length(tube.centerline_N);
   if (at_m - kOwnReach_m > 1e-3) {
     own.push_back({SubLine(tube.centerline_N, 0.0, at_m - kOwnReach_m), tube.radius_m,
@@ -86,14 +84,15 @@ double TiltOf(const RigidTransform& X_NG) {
   return std::acos(std::clamp(-X_NG.linear()(2, 2), -1.0, 1.0));
 }
 
-Fit CheckPoints(const Surroundings& around, const RigidTransform& X_NG, const GripperBoxes& boxes) {
+Fit CheckPoints(const GraspObstacles& around, const RigidTransform& X_NG,
+                const GripperBoxes& boxes) {
   const std::array<OrientedBox, 4> solid = {
       Moved(X_NG, boxes.finger[0]), Moved(X_NG, boxes.finger[1]), Moved(X_NG, boxes.chassis),
       Moved(X_NG, boxes.above_tube)};
   // A tilted body lies aside of E.
   const double reach = boxes.chassis.half_m.y() + 0.02 + kGripperReach_m * std::sin(TiltOf(X_NG));
   int count = 0;
-  for (const Vector3& p : around.points_N) {
+  for (const Vector3& p : around.input.points_N) {
     const Vector3 apart = p - X_NG.translation();
     if (std::abs(apart.x()) > reach || std::abs(apart.y()) > reach) continue;
     for (const OrientedBox& box : solid) {
@@ -102,31 +101,32 @@ Fit CheckPoints(const Surroundings& around, const RigidTransform& X_NG, const Gr
       break;
     }
   }
-  if (count <= around.config.max_points) return {};
+  if (count <= around.input.config.max_points) return {};
   return {0.0, std::to_string(count) + " measured points in the gripper's way, at most " +
-                   std::to_string(around.config.max_points)};
+                   std::to_string(around.input.config.max_points)};
 }
 
 // Does the gripper fit at this pose and opening, and with how much room?
-Fit CheckFit(const Surroundings& around, const std::vector<Surroundings::Obstacle>& own,
+Fit CheckFit(const GraspObstacles& around, const std::vector<GraspObstacle>& own,
              const RigidTransform& X_NG, double opening_m, double height_over_axis_m) {
-  const GripperBoxes boxes = MakeGripperBoxes(opening_m, around.tube.radius_m, height_over_axis_m);
-  const double least = around.config.finger_clearance_m;
+  const GripperBoxes boxes =
+      MakeGripperBoxes(around.input.gripper, opening_m, around.tube.radius_m, height_over_axis_m);
+  const double min_m = around.input.config.finger_clearance_m;
   Fit fit{kEnough_m, ""};
   for (const auto& [name, box] :
        {std::pair{"fingers", boxes.fingers}, std::pair{"chassis", boxes.chassis},
         std::pair{"gripper base", boxes.base}}) {
     const OrientedBox box_N = Moved(X_NG, box);
-    const double to_wall = WallClearance(box_N, around.bin, kEnough_m);
-    if (to_wall < least) {
+    const double to_wall = WallClearance(box_N, around.input.bin, kEnough_m);
+    if (to_wall < min_m) {
       return {to_wall, std::string(name) + " " + Millimetres(to_wall) + " from the bin's wall"};
     }
     fit.clearance_m = std::min(fit.clearance_m, to_wall);
     for (const auto* obstacles : {&around.others, &own}) {
-      for (const Surroundings::Obstacle& other : *obstacles) {
+      for (const GraspObstacle& other : *obstacles) {
         const double gap =
             LineBoxDistance(other.line, box_N, kEnough_m + other.radius_m) - other.radius_m;
-        if (gap < least) {
+        if (gap < min_m) {
           return {gap, std::string(name) + " " + Millimetres(gap) + " from " + other.name};
         }
         fit.clearance_m = std::min(fit.clearance_m, gap);
@@ -161,8 +161,8 @@ Matrix3 UprightTool(const Vector3& along, const Bin& bin) {
 // Angle about the tool's y that turns its x along a tangent, as far as a tool may tilt.
 double SquareTo(const Vector3& tangent, const Matrix3& R_NG) {
   const double rise = R_NG.col(0).dot(tangent) < 0.0 ? -tangent.z() : tangent.z();
-  const double most = Radians(kMostTilt_deg);
-  return std::clamp(std::asin(std::clamp(rise, -1.0, 1.0)), -most, most);
+  const double max_rad = Radians(kMaxTilt_deg);
+  return std::clamp(std::asin(std::clamp(rise, -1.0, 1.0)), -max_rad, max_rad);
 }
 
 double LowestPoint(const OrientedBox& box_N) {
@@ -171,22 +171,23 @@ double LowestPoint(const OrientedBox& box_N) {
 
 // How far back along a tilted tool E stays from the tube's axis: as upright, or more where a finger
 // would come too near to the floor. Nothing when the pads would not hold the tube any more.
-std::optional<double> HeightOverAxis(const Vector3& p_NAxis, const Matrix3& R_NG, double opening_m,
-                                     double radius_m, const GripperSpec& spec) {
+std::optional<double> HeightOverAxis(const GripperGeometry& gripper, const Vector3& p_NAxis,
+                                     const Matrix3& R_NG, double opening_m, double radius_m) {
+  const GripperSpec& spec = gripper.spec;
   double over_m = GraspHeightOverAxis(p_NAxis.z(), spec);
   const double down = -R_NG(2, 2);
   if (down == 1.0) return over_m;
   const RigidTransform X_NG = MakeTransform(R_NG, p_NAxis - over_m * R_NG.col(2));
   const double low_m =
-      LowestPoint(Moved(X_NG, MakeGripperBoxes(opening_m, radius_m, over_m).fingers));
-  over_m += std::max(0.0, kFloorRoom_m - low_m) / down;
-  if (over_m > 0.5 * spec.pad_height_m - kLeastHold_m) return std::nullopt;
+      LowestPoint(Moved(X_NG, MakeGripperBoxes(gripper, opening_m, radius_m, over_m).fingers));
+  over_m += std::max(0.0, kFloorClearance_m - low_m) / down;
+  if (over_m > 0.5 * spec.pad_height_m - kMinHold_m) return std::nullopt;
   return over_m;
 }
 
 // Least distance of the gripper to the bin's walls on a motion, at most kEnough_m.
-double WallClearanceAlong(const CandidateMotion& motion, const Grasp& grasp, double radius_m,
-                          const Bin& bin) {
+double WallClearanceAlong(const GraspInput& input, const CandidateMotion& motion,
+                          const Grasp& grasp, double radius_m) {
   std::vector<RigidTransform> poses;
   if (motion.turns()) {
     const double reach_m = (grasp.X_NG.translation() - motion.pivot_N).norm() + kGripperReach_m;
@@ -200,11 +201,12 @@ double WallClearanceAlong(const CandidateMotion& motion, const Grasp& grasp, dou
       }
     }
   }
-  const GripperBoxes boxes = MakeGripperBoxes(grasp.opening_m, radius_m, 0.0);
+  const GripperBoxes boxes = MakeGripperBoxes(input.gripper, grasp.opening_m, radius_m, 0.0);
   double to_wall = kEnough_m;
   for (const RigidTransform& pose : poses) {
     for (const OrientedBox& box : {boxes.fingers, boxes.chassis, boxes.base}) {
-      to_wall = std::min(to_wall, WallClearance(Moved(pose * grasp.X_NG, box), bin, kEnough_m));
+      to_wall =
+          std::min(to_wall, WallClearance(Moved(pose * grasp.X_NG, box), input.bin, kEnough_m));
     }
   }
   return to_wall;
@@ -216,19 +218,19 @@ struct SiteResult {
 };
 
 // The best opening at one point of the tube and one stance.
-SiteResult TrySite(const Surroundings& around, double at_m, const Stance& stance) {
+SiteResult TrySite(const GraspObstacles& around, double at_m, const Stance& stance) {
   const PerceivedTube& tube = around.tube;
-  const GripperSpec spec;
+  const GripperSpec& spec = around.input.gripper.spec;
   const Vector3 axis = PointAt(tube.centerline_N, at_m);
   const Vector3 tangent = TangentAt(tube.centerline_N, at_m, kTangentWindow_m);
-  Matrix3 R_NG = UprightTool(RotZ(stance.yaw_rad) * tangent, around.bin);
+  Matrix3 R_NG = UprightTool(RotZ(stance.yaw_rad) * tangent, around.input.bin);
   const double square_rad = stance.square ? SquareTo(tangent, R_NG) : 0.0;
   const double slope_deg =
       Degrees(std::asin(std::min(1.0, std::abs(tangent.z()))) - std::abs(square_rad));
-  if (slope_deg > around.config.max_slope_deg) {
+  if (slope_deg > around.input.config.max_slope_deg) {
     return {{},
             "slope " + Number(std::round(slope_deg)) + " degrees, at most " +
-                Number(around.config.max_slope_deg)};
+                Number(around.input.config.max_slope_deg)};
   }
   for (const double covered : around.covered_at_m) {
     if (std::abs(covered - at_m) < around.cover_m) {
@@ -237,9 +239,9 @@ SiteResult TrySite(const Surroundings& around, double at_m, const Stance& stance
   }
   if (stance.square || stance.lean_rad != 0.0) {
     R_NG = R_NG * RotY(square_rad) * RotX(stance.lean_rad);
-    if (-R_NG(2, 2) < std::cos(Radians(kMostTilt_deg)) - 1e-9) return {{}, "tilted too far"};
+    if (-R_NG(2, 2) < std::cos(Radians(kMaxTilt_deg)) - 1e-9) return {{}, "tilted too far"};
   }
-  const std::vector<Surroundings::Obstacle> own = OwnObstacles(tube, at_m);
+  const std::vector<GraspObstacle> own = OwnObstacles(tube, at_m);
   // Half the gap that the tube fills between pads that stand oblique to it.
   const double filled = tube.radius_m / std::cos(stance.yaw_rad) +
                         0.5 * spec.pad_width_m * std::tan(std::abs(stance.yaw_rad));
@@ -250,7 +252,7 @@ SiteResult TrySite(const Surroundings& around, double at_m, const Stance& stance
     const double opening = 2.0 * (filled + side);
     if (opening > spec.stroke_m) continue;
     const std::optional<double> over_axis =
-        HeightOverAxis(axis, R_NG, opening, tube.radius_m, spec);
+        HeightOverAxis(around.input.gripper, axis, R_NG, opening, tube.radius_m);
     if (!over_axis) {
       reason = "tilted, a finger would reach into the floor";
       continue;
@@ -282,17 +284,16 @@ std::vector<std::vector<Stance>> Stances() {
 
 }  // namespace
 
-GraspSites FindGraspSites(const TubeScene& scene, const PerceivedTube& tube,
-                          const std::vector<Vector3>& points_N, const Bin& bin,
-                          const PlannerConfig& config) {
-  const Surroundings around = SurroundingsOf(scene, tube, points_N, bin, config);
+GraspSites FindGraspSites(const GraspInput& input, const PerceivedTube& tube) {
+  const GraspObstacles around = ObstaclesOf(input, tube);
+  const GraspConfig& config = input.config;
   const double length = Length(tube.centerline_N);
   GraspSites out;
   // Sites at both sides of the middle at equal steps, so that reversing a tube changes nothing.
   const auto sweep = [&](double end_m, const std::vector<Stance>& stances, bool report) {
-    const int half = static_cast<int>(std::floor((0.5 * length - end_m) / config.grasp_step_m));
+    const int half = static_cast<int>(std::floor((0.5 * length - end_m) / input.step_m));
     for (int k = -half; k <= half; ++k) {
-      const double at_m = 0.5 * length + k * config.grasp_step_m;
+      const double at_m = 0.5 * length + k * input.step_m;
       SiteResult first;
       bool found = false;
       for (std::size_t j = 0; j < stances.size() && !found; ++j) {
@@ -313,9 +314,9 @@ GraspSites FindGraspSites(const TubeScene& scene, const PerceivedTube& tube,
   return out;
 }
 
-GraspSet RankGrasps(const GraspSites& sites, const PerceivedTube& tube,
-                    const CandidateMotion& motion, double displacement_m, double top_m,
-                    const Bin& bin, const PlannerConfig& config) {
+GraspSet RankGrasps(const GraspInput& input, const GraspSites& sites, const PerceivedTube& tube,
+                    const CandidateMotion& motion, double displacement_m, double top_m) {
+  const GraspConfig& config = input.config;
   GraspSet set;
   const Vector3 centre = CurveCentre(tube.centerline_N);
   const double half_length = 0.5 * Length(tube.centerline_N);
@@ -336,7 +337,7 @@ GraspSet RankGrasps(const GraspSites& sites, const PerceivedTube& tube,
           {tube.id, motion.name, name, "the gripper would run into another tube on the way"});
       continue;
     }
-    const double to_wall = WallClearanceAlong(motion, grasp, tube.radius_m, bin);
+    const double to_wall = WallClearanceAlong(input, motion, grasp, tube.radius_m);
     if (to_wall < config.finger_clearance_m) {
       set.rejections.push_back(
           {tube.id, motion.name, name,
@@ -349,7 +350,7 @@ GraspSet RankGrasps(const GraspSites& sites, const PerceivedTube& tube,
     const double tight = 1.0 - std::clamp(grasp.clearance_m / kEnough_m, 0.0, 1.0);
     grasp.cost = config.weight_height * low + config.weight_centre * off_centre +
                  config.weight_trajectory * trajectory + config.weight_clearance * tight +
-                 config.weight_tilt * TiltOf(grasp.X_NG) / Radians(kMostTilt_deg);
+                 config.weight_tilt * TiltOf(grasp.X_NG) / Radians(kMaxTilt_deg);
     set.grasps.push_back(grasp);
   }
   std::stable_sort(set.grasps.begin(), set.grasps.end(),

@@ -4,9 +4,21 @@
 
 #include "models/bin.h"
 #include "perception/scene/tube_scene.h"
-#include "planner/pick/plan.h"
+#include "planner/extraction/candidate_motion.h"
+#include "planner/grasp/grasp.h"
+#include "planner/grasp/gripper_boxes.h"
 
 namespace tubetwin {
+
+/// What grasps are looked for in; references outlive the call.
+struct GraspInput {
+  const TubeScene& scene;
+  const std::vector<Vector3>& points_N;  ///< VoxelDownsample of the views, or empty.
+  const Bin& bin;
+  const GripperGeometry& gripper;
+  const GraspConfig& config;
+  double step_m = 0.01;  ///< Between grasp points along a tube.
+};
 
 /// A place where the gripper fits around a tube, whatever the tube does afterwards.
 struct GraspSite {
@@ -21,7 +33,7 @@ struct GraspSites {
 };
 
 /// Where a gripper fits (Leão et al. 2020, section 3.4.1, with exact distances instead of
-/// point counts alone): points every `grasp_step_m` along the curve and `grasp_end_m` from its
+/// point counts alone): points every `step_m` along the curve and `grasp_end_m` from its
 /// ends, yaw across the tangent (of the two equal yaws the one whose x points along B's x), E at
 /// GraspHeightOverAxis. Rejected are steep tangents, places within two radii of a crossing under
 /// another tube, and every opening at which fingers, gap or gripper body come within
@@ -31,10 +43,8 @@ struct GraspSites {
 /// equals. The tool is vertical. Only where no site of the tube passes, yaws up to 30 degrees off
 /// and points 12 mm from the ends are tried too; only where none of these does, tools that lean up
 /// to 35 degrees to a side or along a steep tube, E as far back along the tool as the fingers need
-/// over the floor. `points_N`: ThinPoints of the views, or empty.
-GraspSites FindGraspSites(const TubeScene& scene, const PerceivedTube& tube,
-                          const std::vector<Vector3>& points_N, const Bin& bin,
-                          const PlannerConfig& config);
+/// over the floor. `tube` is one of the scene's.
+GraspSites FindGraspSites(const GraspInput& input, const PerceivedTube& tube);
 
 /// The sites that suit a motion, cheapest first, with the paper's cost: height (its sign turned, so
 /// that high points are cheap), distance from the true centre of mass, displacement that the
@@ -44,8 +54,7 @@ struct GraspSet {
   std::vector<Grasp> grasps;
   std::vector<Rejection> rejections;
 };
-GraspSet RankGrasps(const GraspSites& sites, const PerceivedTube& tube,
-                    const CandidateMotion& motion, double displacement_m, double top_m,
-                    const Bin& bin, const PlannerConfig& config);
+GraspSet RankGrasps(const GraspInput& input, const GraspSites& sites, const PerceivedTube& tube,
+                    const CandidateMotion& motion, double displacement_m, double top_m);
 
 }  // namespace tubetwin

@@ -11,18 +11,16 @@ namespace tubetwin {
 namespace {
 
 // Box around a shape of the tool, in E.
-OrientedBox ToolBox(const std::string& name) {
-  const CellLayout layout;
+OrientedBox ToolBox(const ArmModel& arm, const CellLayout& layout, const std::string& name) {
   using Shape = ClearanceChecker::Shape;
-  for (const Shape& shape : ClearanceChecker::ArmShapes(Hc10(), layout)) {
+  for (const Shape& shape : ClearanceChecker::ArmShapes(arm, layout)) {
     if (shape.name != name) continue;
     const Vector3 half = shape.kind == Shape::Kind::kBox
                              ? shape.size_m
                              : Vector3(shape.size_m.x(), shape.size_m.x(), shape.size_m.y());
     return {layout.X_FE.inverse() * shape.X_LinkShape, half};
   }
-  TT_CHECK(!"the tool has this shape");
-  return {};
+  throw LogicError("the tool has no shape '" + name + "'");
 }
 
 // Box from its bounds in E.
@@ -32,18 +30,22 @@ OrientedBox Between(const Vector3& low, const Vector3& high) {
 
 }  // namespace
 
-GripperBoxes MakeGripperBoxes(double opening_m, double tube_radius_m, double height_over_axis_m,
-                              const GripperSpec& spec) {
+GripperGeometry MakeGripperGeometry(const ArmModel& arm, const CellLayout& layout) {
+  return {GripperSpec(), ToolBox(arm, layout, "gripper chassis"),
+          ToolBox(arm, layout, "gripper base")};
+}
+
+GripperBoxes MakeGripperBoxes(const GripperGeometry& gripper, double opening_m,
+                              double tube_radius_m, double height_over_axis_m) {
+  const GripperSpec& spec = gripper.spec;
   const double hx = 0.5 * spec.pad_width_m, hy = 0.5 * opening_m;
   const double outer = hy + spec.finger_thickness_m;
   const double tip = 0.5 * spec.pad_height_m;
   GripperBoxes boxes;
-  static const OrientedBox chassis = ToolBox("gripper chassis");
-  static const OrientedBox base = ToolBox("gripper base");
-  boxes.chassis = chassis;
-  boxes.base = base;
+  boxes.chassis = gripper.chassis;
+  boxes.base = gripper.base;
   // The fingers end at the chassis.
-  const double top = chassis.X_AB.translation().z() + chassis.half_m.z();
+  const double top = gripper.chassis.X_AB.translation().z() + gripper.chassis.half_m.z();
   boxes.fingers = Between({-hx, -outer, top}, {hx, outer, tip});
   boxes.finger[0] = Between({-hx, -outer, top}, {hx, -hy, tip});
   boxes.finger[1] = Between({-hx, hy, top}, {hx, outer, tip});

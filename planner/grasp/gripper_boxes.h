@@ -1,11 +1,21 @@
 #pragma once
 
+#include "models/arm/arm.h"
 #include "models/base/frames.h"
 #include "models/bin.h"
 #include "models/gripper_spec.h"
+#include "models/layout.h"
 #include "planner/scene_query/box_distance.h"
 
 namespace tubetwin {
+
+/// The gripper as the planner knows it: figures of fingers and pads, and the body that carries them
+/// as boxes in frame E, of the arm's list of shapes and the cell's calibration.
+struct GripperGeometry {
+  GripperSpec spec;
+  OrientedBox chassis, base;
+};
+GripperGeometry MakeGripperGeometry(const ArmModel& arm, const CellLayout& layout);
 
 /// What the gripper fills around E, as boxes in frame E (x along the grasped tube, y closing, z out
 /// of the tool), from the lower edge of the pads when closed on the tube up to its own body. All of
@@ -14,14 +24,14 @@ struct GripperBoxes {
   OrientedBox fingers;     ///< Both fingers and the gap between them: no other tube may be there.
   OrientedBox finger[2];   ///< Towards -y and +y.
   OrientedBox above_tube;  ///< The gap over the tube that will be held.
-  OrientedBox chassis;     ///< The body that carries the fingers, from the arm's list of shapes.
-  OrientedBox base;        ///< Its round foot, from the same list.
+  OrientedBox chassis;     ///< The body that carries the fingers.
+  OrientedBox base;        ///< Its round foot.
 };
 
 /// Boxes at `opening_m` between the pads, for a tube of `tube_radius_m` whose axis lies
 /// `height_over_axis_m` below E.
-GripperBoxes MakeGripperBoxes(double opening_m, double tube_radius_m, double height_over_axis_m,
-                              const GripperSpec& spec = {});
+GripperBoxes MakeGripperBoxes(const GripperGeometry& gripper, double opening_m,
+                              double tube_radius_m, double height_over_axis_m);
 
 /// Moved by X_NE into N.
 OrientedBox Moved(const RigidTransform& X_NE, const OrientedBox& box);

@@ -144,6 +144,13 @@ RigidTransform MotionPlanner::PoseOfE(const JointVector& q) const {
   return FlangePose(arm_, q) * layout_.X_FE;
 }
 
+RigidTransform MotionPlanner::OverGoal(const RigidTransform& X_BE,
+                                       const MotionOptions& options) const {
+  const double travel_z_m =
+      bin_.X_BN.translation().z() + options.travel_height_m.value_or(layout_.carry_height_m);
+  return AtHeight(X_BE, std::max(travel_z_m, X_BE.translation().z()));
+}
+
 RigidTransform MotionPlanner::PoseOfEForScan(const RigidTransform& X_BS) const {
   return X_BS * layout_.X_FS.inverse() * layout_.X_FE;
 }

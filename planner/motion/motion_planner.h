@@ -90,6 +90,10 @@ class MotionPlanner {
   /// `q6_near_rad`. Nothing when out of reach or beyond the limits less 2 degrees.
   std::optional<JointVector> Reach(const RigidTransform& X_BE, double q6_near_rad = 0.0) const;
 
+  /// Where a transfer to X_BE begins its way straight down: over the goal at the travel height, or
+  /// at the goal where that is higher.
+  RigidTransform OverGoal(const RigidTransform& X_BE, const MotionOptions& options) const;
+
   /// X_BE at joints q.
   RigidTransform PoseOfE(const JointVector& q) const;
 

@@ -8,10 +8,9 @@
 #include "models/base/json.h"
 #include "models/base/text.h"
 #include "models/gripper_spec.h"
-#include "planner/extraction/motions.h"
 #include "planner/grasp/grasps.h"
-#include "planner/grasp/gripper_boxes.h"
 #include "planner/scene_query/tube_obstacles.h"
+#include "planner/scene_query/tubes.h"
 #include "planner/scene_query/wall_clearance.h"
 
 namespace tubetwin {
@@ -20,7 +19,7 @@ namespace {
 constexpr double kNear_m = 0.045;  // A wall or a tube nearer than this may block a grasp.
 constexpr double kSameWay = 0.99;  // Cosine between directions that are one.
 constexpr double kStep_m = 0.005;  // Between travels that are tried.
-constexpr double kMostTravel_m = 0.06;
+constexpr double kMaxTravel_m = 0.06;
 constexpr double kMargin_m = 0.008;  // Farther than needed: tubes slip.
 constexpr double kPress_m = 0.004;   // Of the fingers' edge below the crown, at most.
 constexpr double kEdge_m = 0.002;    // The crown stays this far inside the fingers' lower face.
@@ -31,8 +30,7 @@ constexpr double kLevel = 0.26;        // Sine of the steepest place that is tou
 constexpr double kSweep_m = 0.01;
 constexpr double kOwnReach_m = 0.045;  // The tube itself is an obstacle from this arc length on.
 constexpr double kOverTube_m = 0.008;  // The touched tube's own points end below this.
-constexpr double kOver_m = 0.015;      // The fingers are lifted this far between strokes.
-constexpr int kMostStrokes = 4;
+constexpr int kMaxStrokes = 4;
 constexpr int kGraspsAsked = 3;
 
 std::string Millimetres(double length_m) { return Number(std::round(1e3 * length_m)) + " mm"; }
@@ -105,13 +103,8 @@ TubeScene WithTubeMoved(const TubeScene& scene, int id, const Vector3& shift) {
 
 class Nudger {
  public:
-  Nudger(const TubeScene& scene, const std::vector<Vector3>& points_N, const Bin& bin,
-         const PlannerConfig& config, const FeasibilityFunction& grasp_feasible)
-      : scene_(scene),
-        points_N_(points_N),
-        bin_(bin),
-        config_(config),
-        grasp_feasible_(grasp_feasible) {}
+  Nudger(const PickProblem& problem, const FeasibilityFunction& grasp_feasible)
+      : problem_(problem), config_(problem.config), grasp_feasible_(grasp_feasible) {}
 
   // Nudges of a tube along `direction`, nearest to the centre of mass first; or why there is none.
   std::vector<Nudge> Along(const PerceivedTube& tube, const Vector3& direction,
@@ -136,9 +129,9 @@ class Nudger {
   // How far the tube has to go to be grasped, with a margin.
   std::optional<double> TravelToGrasp(const PerceivedTube& tube, const Vector3& direction,
                                       std::string& reason) const {
-    const double room_m = MaxSlideDistance(tube, direction, bin_, 0.0);
-    const TubeObstacles around(scene_, tube);
-    for (double travel_m = kStep_m; travel_m <= kMostTravel_m + 1e-9; travel_m += kStep_m) {
+    const double room_m = MaxSlideDistance(tube, direction, problem_.bin, 0.0);
+    const TubeObstacles around(problem_.scene, tube);
+    for (double travel_m = kStep_m; travel_m <= kMaxTravel_m + 1e-9; travel_m += kStep_m) {
       if (travel_m > room_m) {
         reason = "another wall is in the way after " + Millimetres(room_m);
         return std::nullopt;
@@ -152,17 +145,19 @@ class Nudger {
       const bool free = around.NewlyTouched(more_m * direction) == 0;
       return free ? more_m : travel_m;
     }
-    reason = "no grasp fits within " + Millimetres(kMostTravel_m) + " either";
+    reason = "no grasp fits within " + Millimetres(kMaxTravel_m) + " either";
     return std::nullopt;
   }
 
   bool Graspable(const PerceivedTube& tube, const Vector3& shift) const {
-    const TubeScene moved = WithTubeMoved(scene_, tube.id, shift);
-    const auto it = std::find_if(moved.tubes.begin(), moved.tubes.end(),
-                                 [&](const PerceivedTube& t) { return t.id == tube.id; });
-    const GraspSites sites = FindGraspSites(moved, *it, {}, bin_, config_);
-    const CandidateMotion up = UpMotion(*it, config_);
-    const GraspSet set = RankGrasps(sites, *it, up, 0.0, it->radius_m, bin_, config_);
+    const TubeScene moved = WithTubeMoved(problem_.scene, tube.id, shift);
+    const PerceivedTube& there = TubeOf(moved, tube.id);
+    const std::vector<Vector3> no_points;
+    const GraspInput input{moved,   no_points,           problem_.bin, problem_.gripper,
+                           config_, config_.grasp_step_m};
+    const CandidateMotion up = StraightUp({moved, there, problem_.bin, config_});
+    const GraspSet set =
+        RankGrasps(input, FindGraspSites(input, there), there, up, 0.0, there.radius_m);
     const int asked = std::min<int>(kGraspsAsked, static_cast<int>(set.grasps.size()));
     return std::any_of(set.grasps.begin(), set.grasps.begin() + asked, [&](Grasp grasp) {
       if (!grasp_feasible_(grasp, up)) return true;
@@ -195,8 +190,8 @@ class Nudger {
     const double reach_m = HalfFinger_m() - kEdge_m;
     double gone_m = 0.0;
     while (gone_m < nudge.travel_m - 1e-6) {
-      if (static_cast<int>(nudge.strokes.size()) == kMostStrokes) {
-        reason = "more than " + std::to_string(kMostStrokes) + " strokes would be needed";
+      if (static_cast<int>(nudge.strokes.size()) == kMaxStrokes) {
+        reason = "more than " + std::to_string(kMaxStrokes) + " strokes would be needed";
         return false;
       }
       const Vector3 crown = PointAt(tube.centerline_N, nudge.at_m) + gone_m * nudge.direction_N +
@@ -243,8 +238,8 @@ class Nudger {
 
   std::string AgainstPose(const PerceivedTube& tube, const Nudge& nudge,
                           const RigidTransform& X_NE) const {
-    const GripperBoxes boxes = MakeGripperBoxes(0.0, tube.radius_m, 0.0);
-    const double least = config_.finger_clearance_m;
+    const GripperBoxes boxes = MakeGripperBoxes(problem_.gripper, 0.0, tube.radius_m, 0.0);
+    const double min_m = config_.finger_clearance_m;
     OrientedBox over = boxes.fingers;  // Without the part that touches the tube.
     over.half_m.z() -= 0.5 * kOverTube_m;
     over.X_AB.translation().z() -= 0.5 * kOverTube_m;
@@ -253,21 +248,21 @@ class Nudger {
                                            std::tuple{"chassis", boxes.chassis, boxes.chassis},
                                            std::tuple{"gripper base", boxes.base, boxes.base}}) {
       const OrientedBox box_N = Moved(X_NE, box), upper_N = Moved(X_NE, upper);
-      if (WallClearance(box_N, bin_, 2.0 * least) < least) {
+      if (WallClearance(box_N, problem_.bin, 2.0 * min_m) < min_m) {
         return std::string(name) + " too near to a wall";
       }
-      for (const PerceivedTube& other : scene_.tubes) {
+      for (const PerceivedTube& other : problem_.scene.tubes) {
         if (other.id == tube.id) continue;
-        if (LineBoxDistance(other.centerline_N, box_N, 2.0 * least + other.radius_m) <
-            least + other.radius_m) {
+        if (LineBoxDistance(other.centerline_N, box_N, 2.0 * min_m + other.radius_m) <
+            min_m + other.radius_m) {
           return std::string(name) + " too near to tube " + std::to_string(other.id);
         }
       }
-      if (MeetsOwn(tube, nudge.at_m, upper_N, least)) {
+      if (MeetsOwn(tube, nudge.at_m, upper_N, min_m)) {
         return std::string(name) + " too near to another part of the tube";
       }
       points +=
-          static_cast<int>(std::count_if(points_N_.begin(), points_N_.end(),
+          static_cast<int>(std::count_if(problem_.points_N.begin(), problem_.points_N.end(),
                                          [&](const Vector3& p) { return Contains(upper_N, p); }));
     }
     if (points > config_.max_points) return "measured points in the gripper's way";
@@ -275,19 +270,17 @@ class Nudger {
   }
 
   static bool MeetsOwn(const PerceivedTube& tube, double at_m, const OrientedBox& box_N,
-                       double least) {
+                       double min_m) {
     const double length = Length(tube.centerline_N);
     const auto meets = [&](double from_m, double to_m) {
       if (to_m - from_m < 1e-3) return false;
       return LineBoxDistance(SubLine(tube.centerline_N, from_m, to_m), box_N,
-                             2.0 * least + tube.radius_m) < least + tube.radius_m;
+                             2.0 * min_m + tube.radius_m) < min_m + tube.radius_m;
     };
     return meets(0.0, at_m - kOwnReach_m) || meets(at_m + kOwnReach_m, length);
   }
 
-  const TubeScene& scene_;
-  const std::vector<Vector3>& points_N_;
-  const Bin& bin_;
+  const PickProblem& problem_;
   const PlannerConfig& config_;
   const FeasibilityFunction& grasp_feasible_;
 };
@@ -307,11 +300,11 @@ std::optional<std::string> TryArm(Nudge& nudge, const NudgeFeasibility& feasible
 
 }  // namespace
 
-NudgeResult PlanNudge(const TubeScene& scene, const std::vector<Vector3>& points_N, const Bin& bin,
-                      const PlannerConfig& config, const FeasibilityFunction& grasp_feasible,
+NudgeResult PlanNudge(const PickProblem& problem, const FeasibilityFunction& grasp_feasible,
                       const NudgeFeasibility& feasible) {
   NudgeResult result;
-  const Nudger nudger(scene, points_N, bin, config, grasp_feasible);
+  const TubeScene& scene = problem.scene;
+  const Nudger nudger(problem, grasp_feasible);
   std::vector<std::vector<Nudge>> ways;  // Of one tube and direction each.
   for (const PerceivedTube& tube : scene.tubes) {
     if (tube.centerline_N.size() < 2 || Length(tube.centerline_N) <= 0.0) continue;
@@ -321,7 +314,7 @@ NudgeResult PlanNudge(const TubeScene& scene, const std::vector<Vector3>& points
     }
     std::vector<std::string> reasons;  // One for each direction.
     bool any = false;
-    for (const Vector3& direction : Directions(scene, tube, bin)) {
+    for (const Vector3& direction : Directions(scene, tube, problem.bin)) {
       std::string reason;
       std::vector<Nudge> nudges = nudger.Along(tube, direction, reason);
       reasons.push_back(reason);
@@ -346,30 +339,6 @@ NudgeResult PlanNudge(const TubeScene& scene, const std::vector<Vector3>& points
     result.rejections.push_back({way.front().tube, "nudge", "", "arm: " + against.value_or("")});
   }
   return result;
-}
-
-NudgeFeasibility ArmNudgeFeasibility(const MotionPlanner& motion, const CellLayout& layout,
-                                     const Bin& bin) {
-  return [&motion, carry_m = layout.carry_height_m,
-          bin](const Nudge& nudge) -> std::optional<std::string> {
-    MotionOptions options;
-    options.finger_clearance_m = 0.001;
-    options.opening_m = 0.0;
-    RigidTransform X_BE_over = bin.X_BN * nudge.strokes.front().X_NE;
-    X_BE_over.translation().z() = bin.X_BN.translation().z() + carry_m;
-    const std::optional<JointVector> q_over = motion.Reach(X_BE_over);
-    if (!q_over) return "the place over the tube is out of reach";
-    std::vector<RigidTransform> way;
-    for (const NudgeStroke& stroke : nudge.strokes) {
-      const RigidTransform X_BE = bin.X_BN * stroke.X_NE;
-      const RigidTransform end = bin.X_BN * Translation(stroke.travel_N) * stroke.X_NE;
-      const RigidTransform up = Translation(0, 0, kOver_m);
-      way.insert(way.end(), {up * X_BE, X_BE, end, up * end});
-    }
-    const MotionResult planned = motion.PlanPolyline(*q_over, way, options);
-    if (const auto* refused = std::get_if<MotionRejection>(&planned)) return refused->reason;
-    return std::nullopt;
-  };
 }
 
 Json ToJson(const std::optional<Nudge>& nudge) {

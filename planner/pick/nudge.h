@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "planner/motion/motion_planner.h"
-#include "planner/pick/pick_planner.h"
+#include "planner/motion/path_config.h"
+#include "planner/motion/pick_path.h"
+#include "planner/pick/pick_plan.h"
 
 namespace tubetwin {
 
@@ -46,15 +47,22 @@ struct NudgeResult {
 /// with the shortest way to where `grasp_feasible` has a grasp for the tube, a little farther for
 /// safety. Fingers and gripper keep `finger_clearance_m` to walls and other tubes on all of it,
 /// never push towards a wall, and the tube arrives without touching what it did not touch before.
-/// `points_N`: ThinPoints of the views, or empty.
-NudgeResult PlanNudge(const TubeScene& scene, const std::vector<Vector3>& points_N, const Bin& bin,
-                      const PlannerConfig& config, const FeasibilityFunction& grasp_feasible,
+NudgeResult PlanNudge(const PickProblem& problem, const FeasibilityFunction& grasp_feasible,
                       const NudgeFeasibility& feasible);
 
-/// Asks the arm for all strokes: from over the first one at the carry height, with all limits and
-/// clearances that MotionPlanner keeps. `motion` must outlive the function.
-NudgeFeasibility ArmNudgeFeasibility(const MotionPlanner& motion, const CellLayout& layout,
-                                     const Bin& bin);
+/// Stages of a nudge's path: 0, to over the first touch with closed fingers, then three of each
+/// stroke.
+enum class StrokeStage { kPress, kDrag, kLift };
+int NudgeStage(int stroke, StrokeStage stage);
+
+/// The one description of how a tube is nudged. Contact ends pressing and dragging.
+PickPath MakeNudgePath(const Nudge& nudge, const Bin& bin, const PathConfig& config,
+                       const NudgeConfig& nudging);
+
+/// Asks the arm whether it could run such paths, from wherever it is. All must outlive the
+/// function.
+NudgeFeasibility NudgePathFeasibility(const MotionPlanner& planner, const Bin& bin,
+                                      const PathConfig& config, const NudgeConfig& nudging);
 
 /// Null when there is none.
 Json ToJson(const std::optional<Nudge>& nudge);

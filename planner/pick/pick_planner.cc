@@ -4,11 +4,10 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "models/base/error.h"
 #include "models/base/text.h"
-#include "planner/extraction/motions.h"
-#include "planner/grasp/grasps.h"
 #include "planner/pick/rollout_scheduler.h"
 #include "planner/scene_query/removal_order.h"
 
@@ -16,14 +15,9 @@ namespace tubetwin {
 namespace {
 
 constexpr double kManyReleased = 3.0;
-constexpr double kApart_m = 0.020;  // Two tries nearer than this are one try.
+
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-bool IsNearAny(const std::vector<double>& tried_m, double at_m) {
-  return std::any_of(tried_m.begin(), tried_m.end(),
-                     [&](double other_m) { return std::abs(other_m - at_m) < kApart_m - 1e-9; });
 }
 
 struct Option {
@@ -31,7 +25,7 @@ struct Option {
   PickPlan plan;
 };
 
-std::string DoubtAbout(const PerceivedTube& tube, const Part& part, const PlannerConfig& config) {
+std::string DoubtAbout(const PerceivedTube& tube, const Part& part, const SearchConfig& config) {
   const double share = tube.length_m / part.length_m;
   if (share < config.min_length_share) {
     return "only " + Number(std::round(share * 100)) + " % of the part's length is known, below " +
@@ -52,28 +46,35 @@ double TopOf(const TubeScene& scene) {
   return top;
 }
 
-class Chooser {
+// The scene with tubes by their ids and crossings by theirs and their place.
+TubeScene Ordered(TubeScene scene) {
+  std::sort(scene.tubes.begin(), scene.tubes.end(),
+            [](const PerceivedTube& a, const PerceivedTube& b) { return a.id < b.id; });
+  const auto key = [](const Crossing& c) {
+    return std::tuple(c.under, c.at_under_m, c.over, c.at_over_m);
+  };
+  std::sort(scene.crossings.begin(), scene.crossings.end(),
+            [&](const Crossing& a, const Crossing& b) { return key(a) < key(b); });
+  return scene;
+}
+
+class PickPlanner {
  public:
-  Chooser(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
-          const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,
-          const FeasibilityFunction& feasible, std::uint64_t seed)
-      : scene_(scene),
-        points_N_(points_N),
-        part_(part),
-        bin_(bin),
-        config_(config),
+  PickPlanner(const PickProblem& problem, const EvaluateFunction& evaluate,
+              const FeasibilityFunction& feasible, std::uint64_t seed)
+      : problem_(problem),
+        scene_(problem.scene),
+        config_(problem.config),
         evaluate_(evaluate),
-        feasible_(feasible),
+        choice_(feasible),
         seed_(seed),
-        top_m_(TopOf(scene)) {}
+        top_m_(TopOf(scene_)) {}
 
   PlanResult Run() {
     const double start_s = WallSeconds();
     std::vector<Option> options = FreeOptions();
     TryAll(options, Rank::kCertainFree);
-    if (result_.plans.empty()) {
-      TryCovered(options);
-    }
+    if (result_.plans.empty()) TryCovered(options);
     Sort(options);
     TryAll(options, Rank::kJams);
     result_.planning_s = WallSeconds() - start_s;
@@ -82,8 +83,8 @@ class Chooser {
 
  private:
   TubeClass ClassOf(const PerceivedTube& tube) const {
-    return config_.classes == "occluded_joints" ? tube.class_paper.value_or(tube.tube_class)
-                                                : tube.tube_class;
+    return config_.by_occluded_joints() ? tube.class_paper.value_or(tube.tube_class)
+                                        : tube.tube_class;
   }
 
   std::vector<Target> Targets(bool free) {
@@ -91,31 +92,34 @@ class Chooser {
     for (const PerceivedTube& tube : scene_.tubes) {
       const TubeClass seen_as = ClassOf(tube);
       if ((seen_as == TubeClass::kFree) != free) continue;
-      if (seen_as == TubeClass::kStrong && config_.classes == "occluded_joints") {
+      if (seen_as == TubeClass::kStrong && config_.by_occluded_joints()) {
         result_.rejections.push_back({tube.id, "", "", "strongly occluded tubes are not picked"});
         continue;
       }
       if (tube.centerline_N.size() < 2 || Length(tube.centerline_N) <= 0.0) continue;
       const double released = std::min(1.0, ReleasedBy(scene_, tube.id) / kManyReleased);
-      Target target{&tube,
-                    DoubtAbout(tube, part_, config_),
+      Target target{&tube, DoubtAbout(tube, problem_.part, config_),
                     config_.weight_confidence * (1.0 - tube.confidence) +
                         config_.weight_release * (1.0 - released),
-                    {}};
-      target.sites = FindGraspSites(scene_, tube, points_N_, bin_, config_);
+                    FindGraspSites(problem_.grasps(), tube)};
       Report(target.sites.rejections);
       if (target.sites.sites.empty()) {
-        std::string reason = "no place where the gripper fits, upright or leaning";
-        if (!target.sites.rejections.empty()) {
-          const Rejection& middle = target.sites.rejections[target.sites.rejections.size() / 2];
-          reason += ", for example " + middle.grasp + ": " + middle.reason;
-        }
-        result_.rejections.push_back({tube.id, "", "", reason});
+        ReportNoSite(target);
         continue;
       }
       targets.push_back(std::move(target));
     }
     return targets;
+  }
+
+  void ReportNoSite(const Target& target) {
+    std::string reason = "no place where the gripper fits, upright or leaning";
+    const std::vector<Rejection>& all = target.sites.rejections;
+    if (!all.empty()) {
+      const Rejection& middle = all[all.size() / 2];
+      reason += ", for example " + middle.grasp + ": " + middle.reason;
+    }
+    result_.rejections.push_back({target.tube->id, "", "", reason});
   }
 
   std::vector<Option> FreeOptions() {
@@ -128,7 +132,7 @@ class Chooser {
       return options;
     }
     for (const Target& target : Targets(true)) {
-      const CandidateMotion up = UpMotion(*target.tube, config_);
+      const CandidateMotion up = StraightUp(problem_.extraction(*target.tube));
       result_.candidates.push_back(up);
       AddOptions(target, up, nullptr, options);
     }
@@ -155,12 +159,7 @@ class Chooser {
   void TryCovered(std::vector<Option>& options) {
     const std::vector<Option> free = options;
     const std::vector<Target> targets = CoveredTargets();
-    const RunnableFunction runnable = [this](const CandidateMotion& motion,
-                                             const std::vector<Grasp>& grasps) {
-      return FirstRunnable(motion, grasps);
-    };
-    RolloutScheduler search({scene_, part_, bin_, config_, evaluate_, runnable, seed_, top_m_},
-                            targets, result_);
+    RolloutScheduler search({problem_, evaluate_, choice_, seed_, top_m_}, targets, result_);
     while (result_.plans.empty() && search.Next()) {
       options = free;
       for (const Scored& scored : search.scored()) {
@@ -179,36 +178,6 @@ class Chooser {
     search.Finish();
   }
 
-  // The first grasp with which the arm can run a motion, of those that are apart.
-  std::optional<Grasp> FirstRunnable(const CandidateMotion& motion,
-                                     const std::vector<Grasp>& grasps) {
-    std::vector<double> tried;
-    std::string against;
-    for (Grasp grasp : grasps) {
-      if (IsNearAny(tried, grasp.at_m)) continue;
-      tried.push_back(grasp.at_m);
-      const std::optional<std::string> reason = AgainstEitherYaw(grasp, motion);
-      if (!reason) return grasp;
-      if (against.empty()) against = *reason;
-    }
-    if (!tried.empty()) ReportArm(motion, tried.front(), against);
-    return std::nullopt;
-  }
-
-  // Why the arm can run the motion neither with this grasp nor with the hand turned by half a turn;
-  // nothing: it can, with the grasp as it is then.
-  std::optional<std::string> AgainstEitherYaw(Grasp& grasp, const CandidateMotion& motion) const {
-    const std::optional<std::string> against = feasible_(grasp, motion);
-    if (!against) return std::nullopt;
-    grasp.X_NG.linear() = grasp.X_NG.linear() * RotZ(kPi);
-    return feasible_(grasp, motion) ? against : std::nullopt;
-  }
-
-  void ReportArm(const CandidateMotion& motion, double at_m, const std::string& against) {
-    Report({{motion.tube, motion.name, "at " + Number(std::round(at_m * 1e3) / 1e3) + " m",
-             "arm: " + against}});
-  }
-
   // All grasps of a tube for a motion; `score` null: the simulator was not needed.
   void AddOptions(const Target& target, const CandidateMotion& motion, const CandidateScore* score,
                   std::vector<Option>& options) {
@@ -217,9 +186,8 @@ class Chooser {
       result_.rejections.push_back({tube.id, motion.name, "", "the simulation diverged"});
       return;
     }
-    GraspSet grasps =
-        RankGrasps(target.sites, tube, motion, score != nullptr ? score->displacement_m : 0.0,
-                   top_m_, bin_, config_);
+    const GraspSet grasps = RankGrasps(problem_.grasps(), target.sites, tube, motion,
+                                       score != nullptr ? score->displacement_m : 0.0, top_m_);
     Report(grasps.rejections);
     for (const Grasp& grasp : grasps.grasps) {
       Option option;
@@ -229,13 +197,12 @@ class Chooser {
       option.plan.motion = motion;
       option.plan.grasp = grasp;
       option.plan.used_simulator = score != nullptr;
+      option.plan.cost = grasp.cost + target.cost;
       if (score != nullptr) {
         option.plan.prediction = Prediction{score->displacement_m, score->extra_probability,
                                             static_cast<int>(score->samples.size())};
+        option.plan.cost += config_.weight_extra * ExtraProbability(*score, problem_.part, config_);
       }
-      option.plan.cost =
-          grasp.cost + target.cost +
-          (score != nullptr ? config_.weight_extra * ExtraProbability(*score, part_) : 0.0);
       option.plan.note =
           option.rank == Rank::kJams ? "the motion jammed in the simulator" : target.doubt;
       options.push_back(std::move(option));
@@ -264,8 +231,8 @@ class Chooser {
     if (IsNearAny(tried, option.plan.grasp.at_m)) return;
     tried.push_back(option.plan.grasp.at_m);
     PickPlan plan = option.plan;
-    if (const std::optional<std::string> against = AgainstEitherYaw(plan.grasp, plan.motion)) {
-      ReportArm(plan.motion, plan.grasp.at_m, *against);
+    if (const auto refusal = choice_.RefusalOf(plan.grasp, plan.motion)) {
+      Report({GraspChoice::ArmRejection(plan.motion, plan.grasp.at_m, *refusal)});
       return;
     }
     ++kept_[id];
@@ -276,13 +243,11 @@ class Chooser {
     result_.rejections.insert(result_.rejections.end(), rejections.begin(), rejections.end());
   }
 
+  const PickProblem& problem_;
   const TubeScene& scene_;
-  const std::vector<Vector3>& points_N_;
-  const Part& part_;
-  const Bin& bin_;
   const PlannerConfig& config_;
   const EvaluateFunction& evaluate_;
-  const FeasibilityFunction& feasible_;
+  GraspChoice choice_;
   const std::uint64_t seed_;
   const double top_m_;
   PlanResult result_;
@@ -305,11 +270,13 @@ int ReleasedBy(const TubeScene& scene, int id) {
       }));
 }
 
-PlanResult PlanPicks(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
-                     const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,
+PlanResult PlanPicks(const PickProblem& problem, const EvaluateFunction& evaluate,
                      const FeasibilityFunction& feasible, std::uint64_t seed) {
   TT_CHECK(feasible);
-  return Chooser(scene, points_N, part, bin, config, evaluate, feasible, seed).Run();
+  const TubeScene scene = Ordered(problem.scene);
+  const PickProblem ordered{scene,           problem.points_N, problem.part,   problem.bin,
+                            problem.gripper, problem.config,   problem.motions};
+  return PickPlanner(ordered, evaluate, feasible, seed).Run();
 }
 
 }  // namespace tubetwin

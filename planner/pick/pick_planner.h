@@ -1,19 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "planner/pick/plan.h"
+#include "planner/pick/pick_plan.h"
 
 namespace tubetwin {
-
-/// Whether the arm can carry out a grasp and the motion after it: nothing when it can, else why
-/// not. Must be a pure function.
-using FeasibilityFunction =
-    std::function<std::optional<std::string>(const Grasp& grasp, const CandidateMotion& motion)>;
 
 /// Tubes that nothing covers any more once tube `id` is gone.
 int ReleasedBy(const TubeScene& scene, int id);
@@ -30,10 +21,9 @@ int ReleasedBy(const TubeScene& scene, int id);
 /// less the tubes that it sets free, plus ExtraProbability. Plans are checked by `feasible` in this
 /// order, each with either of the gripper's two equal yaws, until `max_plans` are found; places of
 /// one tube at least 20 mm apart, so that a second try is another try. Classes are those of
-/// `config.classes`. Nothing to pick is an empty list; `rejections` says why for every tube.
-/// `points_N`: ThinPoints of the views, or empty.
-PlanResult PlanPicks(const TubeScene& scene, const std::vector<Vector3>& points_N, const Part& part,
-                     const Bin& bin, const PlannerConfig& config, const EvaluateFunction& evaluate,
+/// `config.classes`. Nothing to pick is an empty list; `rejections` says why for every tube. The
+/// order of the scene's tubes and crossings changes nothing.
+PlanResult PlanPicks(const PickProblem& problem, const EvaluateFunction& evaluate,
                      const FeasibilityFunction& feasible, std::uint64_t seed = 1);
 
 }  // namespace tubetwin

@@ -7,30 +7,16 @@
 
 #include "models/base/error.h"
 #include "models/base/text.h"
-#include "planner/extraction/more_motions.h"
-#include "planner/extraction/tilt_motions.h"
 #include "planner/scene_query/sweep.h"
 
 namespace tubetwin {
 namespace {
 
-// How often another tube came along by the displacement that was predicted
-// (tests/benchmark/lifts.sh, hose_b threaded, seeds 1 to 23): 0 of 34 below 5 cm, 1 of 32 to 10 cm,
-// 17 % to 20 cm, 50 % to 30 cm, 71 % to 50 cm, 89 % beyond. It counts as so many samples.
-constexpr double kExtraPerMetre = 2.2, kQuiet_m = 0.05, kLeastExtra = 0.02, kMostExtra = 0.9;
-constexpr double kPriorSamples = 5.0;
-// After a tip it says nothing, as what came along on the way up has been shed: a constant then that
-// counts as one sample.
-constexpr double kTipExtra = 0.15;
 constexpr int kSamplesAtOnce = 2;  // A motion that is bad in one of them need not be tried further.
 // So many motions are rolled out before their scores limit the next ones, and so much of the
 // simulated time is kept from first roll-outs for the samples of the best.
 constexpr std::size_t kAtOnce = 6;
 constexpr double kKeptForSamples = 0.3;
-constexpr double kHoses = 7.0;  // That `max_simulated_s` is meant for.
-// As much faster is a rigid tube simulated (`./dev bench evaluator`).
-constexpr double kRigid = 3.0;
-
 double WallSeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -66,13 +52,14 @@ Rank RankOf(bool free, bool doubtful, const CandidateScore* score) {
   return free ? Rank::kDoubtfulFree : Rank::kDoubtfulCovered;
 }
 
-double ExtraProbability(const CandidateScore& score, const Part& part) {
+double ExtraProbability(const CandidateScore& score, const Part& part, const SearchConfig& config) {
   if (score.status == CandidateScore::Status::kPruned) return 0.0;
-  const bool tip = IsTip(score);
+  const bool sheds = ShedsByTilting(score);
   const double expected =
-      tip ? kTipExtra
-          : std::clamp(kExtraPerMetre * (score.displacement_m - kQuiet_m), kLeastExtra, kMostExtra);
-  const double weight = part.is_hose() && !tip ? kPriorSamples : 1.0;
+      sheds ? config.extra_after_shedding
+            : std::clamp(config.extra_per_m * (score.displacement_m - config.extra_quiet_m),
+                         config.extra_min, config.extra_max);
+  const double weight = part.is_hose() && !sheds ? config.extra_prior_samples : 1.0;
   const double n = static_cast<double>(score.samples.size());
   return (n * score.extra_probability + weight * expected) / (n + weight);
 }
@@ -82,12 +69,13 @@ RolloutScheduler::RolloutScheduler(const SearchInput& input, const std::vector<T
     : input_(input),
       targets_(targets),
       result_(result),
-      most_simulated_s_(input.config.max_simulated_s * (input.part.is_hose() ? 1.0 : kRigid) *
-                        kHoses / std::max<std::size_t>(input.scene.tubes.size(), 1)) {}
+      max_simulated_s_(
+          config().max_simulated_s * (input.problem.part.is_hose() ? 1.0 : config().budget_rigid) *
+          config().budget_tubes / std::max<std::size_t>(input.problem.scene.tubes.size(), 1)) {}
 
 bool RolloutScheduler::Exhausted() {
-  return next_ == targets_.size() && NextWithout(tipped_) == nullptr &&
-         NextWithout(separated_) == nullptr;
+  return next_ == targets_.size() && NextWithout(had_second_) == nullptr &&
+         NextWithout(had_last_) == nullptr;
 }
 
 bool RolloutScheduler::Next() {
@@ -95,7 +83,7 @@ bool RolloutScheduler::Next() {
   do {
     ScoreMore();
     Refine();
-  } while (!Exhausted() && !AnyPromising() && simulated_s_ < most_simulated_s_);
+  } while (!Exhausted() && !AnyPromising() && simulated_s_ < max_simulated_s_);
   return true;
 }
 
@@ -111,16 +99,15 @@ void RolloutScheduler::Finish() {
 
 void RolloutScheduler::ScoreMore() {
   if (next_ == targets_.size()) AddLongList();
-  while (next_ < targets_.size() &&
-         static_cast<int>(waiting_.size()) < input_.config.max_candidates) {
-    AddMotions(targets_[next_++]);
+  while (next_ < targets_.size() && static_cast<int>(waiting_.size()) < config().max_candidates) {
+    AddMotions(targets_[next_++], ExtractionMotion::Tier::kFirst);
   }
   ScreenWaiting();
 }
 
 // The best tube that is not among those that had a list; null: none is to have it any more.
 const Target* RolloutScheduler::NextWithout(const std::vector<const Target*>& had) {
-  if (static_cast<int>(had.size()) >= input_.config.separated) return nullptr;
+  if (static_cast<int>(had.size()) >= config().separated) return nullptr;
   for (const Scored* scored : InOrder()) {
     if (std::find(had.begin(), had.end(), scored->target) == had.end()) return scored->target;
   }
@@ -128,38 +115,32 @@ const Target* RolloutScheduler::NextWithout(const std::vector<const Target*>& ha
 }
 
 void RolloutScheduler::AddLongList() {
-  const Target* next = NextWithout(tipped_);
-  if (next != nullptr) {
-    tipped_.push_back(next);
-    AddMotions(*next, MakeTilts(input_.scene, *next->tube, input_.bin, input_.config));
-    AddMotions(*next, MakeTips(*next->tube, input_.bin, input_.config));
-  } else if ((next = NextWithout(separated_))) {
-    separated_.push_back(next);
-    AddMotions(*next, MakeSeparations(*next->tube, input_.bin, input_.config));
+  if (const Target* second = NextWithout(had_second_)) {
+    had_second_.push_back(second);
+    AddMotions(*second, ExtractionMotion::Tier::kSecond);
+  } else if (const Target* last = NextWithout(had_last_)) {
+    had_last_.push_back(last);
+    AddMotions(*last, ExtractionMotion::Tier::kLast);
   }
 }
 
-void RolloutScheduler::AddMotions(const Target& target) {
-  AddMotions(target, MakeMotions(input_.scene, *target.tube, input_.bin, input_.config));
-  if (input_.config.classes == "occluded_joints") return;  // The paper's own candidates.
-  AddMotions(target, MakeWaysOut(input_.scene, *target.tube, input_.bin, input_.config));
-}
-
-void RolloutScheduler::AddMotions(const Target& target, MotionSet set) {
+void RolloutScheduler::AddMotions(const Target& target, ExtractionMotion::Tier tier) {
+  const PickProblem& problem = input_.problem;
   const auto report = [this](const std::vector<Rejection>& rejections) {
     result_.rejections.insert(result_.rejections.end(), rejections.begin(), rejections.end());
   };
+  MotionSet set = MakeMotions(problem.motions, tier, problem.extraction(*target.tube));
   report(set.rejections);
   for (CandidateMotion& motion : set.motions) {
     result_.candidates.push_back(motion);
-    GraspSet grasps = RankGrasps(target.sites, *target.tube, motion, 0.0, input_.top_m, input_.bin,
-                                 input_.config);
+    GraspSet grasps =
+        RankGrasps(problem.grasps(), target.sites, *target.tube, motion, 0.0, input_.top_m);
     if (grasps.grasps.empty()) {
       report(grasps.rejections);
       report({{target.tube->id, motion.name, "", "no grasp suits this motion"}});
       continue;
     }
-    const int touches = CountTouched(input_.scene, motion);
+    const int touches = CountTouched(problem.scene, motion);
     waiting_.push_back({&target, std::move(motion), std::move(grasps.grasps), touches});
   }
 }
@@ -171,37 +152,45 @@ bool RolloutScheduler::HasOf(const Waiting& waiting, const std::vector<Scored>& 
   });
 }
 
+// Takes from the waiting motions those that are rolled out together, with the displacement up to
+// which each is worth it. One that sheds by tilting takes as long as a wave of others: it is one.
+std::vector<Scored> RolloutScheduler::NextWave(std::size_t& next, std::vector<double>& give_up_m) {
+  const std::vector<Scored*> order = InOrder();
+  // With one sample there is no second question that could set a wrong one right.
+  const Scored* rival =
+      config().samples > 1 && order.size() >= static_cast<std::size_t>(config().refined)
+          ? order[config().refined - 1]
+          : nullptr;
+  std::vector<Scored> wave;
+  const auto full = [&] {
+    return wave.size() == kAtOnce || (!wave.empty() && ShedsByTilting(wave.back().motion));
+  };
+  for (; next < waiting_.size() && !full(); ++next) {
+    Waiting& waiting = waiting_[next];
+    if (HasOf(waiting, wave) || HasOf(waiting, scored_)) continue;  // A variant of the same.
+    if (!wave.empty() && ShedsByTilting(waiting.motion)) break;
+    const GraspChoice::Choice choice = input_.choice.FirstRunnable(waiting.motion, waiting.grasps);
+    result_.rejections.insert(result_.rejections.end(), choice.rejections.begin(),
+                              choice.rejections.end());
+    if (!choice.grasp) continue;
+    wave.push_back(
+        {waiting.target, std::move(waiting.motion), choice.grasp->at_m, choice.grasp->cost, {}, 0});
+    give_up_m.push_back(rival != nullptr ? WorthUpTo(wave.back(), *rival)
+                                         : std::numeric_limits<double>::infinity());
+  }
+  return wave;
+}
+
 void RolloutScheduler::ScreenWaiting() {
-  const PlannerConfig& config = input_.config;
   std::stable_sort(waiting_.begin(), waiting_.end(), [&](const Waiting& a, const Waiting& b) {
     const bool doubtful_a = !a.target->doubt.empty(), doubtful_b = !b.target->doubt.empty();
     return doubtful_a != doubtful_b ? doubtful_b : a.touches < b.touches;
   });
   std::size_t next = 0;
   while (next < waiting_.size() &&
-         (scored_.empty() || simulated_s_ < (1.0 - kKeptForSamples) * most_simulated_s_)) {
-    const std::vector<Scored*> order = InOrder();
-    // With one sample there is no second question that could set a wrong one right.
-    const Scored* rival =
-        config.samples > 1 && order.size() >= static_cast<std::size_t>(config.refined)
-            ? order[config.refined - 1]
-            : nullptr;
-    std::vector<Scored> wave;
+         (scored_.empty() || simulated_s_ < (1.0 - kKeptForSamples) * max_simulated_s_)) {
     std::vector<double> give_up_m;
-    // A tip takes as long as a wave of others: it is one.
-    const auto full = [&] {
-      return wave.size() == kAtOnce || (!wave.empty() && IsTip(wave.back().motion));
-    };
-    for (; next < waiting_.size() && !full(); ++next) {
-      Waiting& waiting = waiting_[next];
-      if (HasOf(waiting, wave) || HasOf(waiting, scored_)) continue;  // Another way of the same.
-      if (!wave.empty() && IsTip(waiting.motion)) break;
-      const std::optional<Grasp> grasp = input_.runnable(waiting.motion, waiting.grasps);
-      if (!grasp) continue;
-      wave.push_back({waiting.target, std::move(waiting.motion), grasp->at_m, grasp->cost, {}, 0});
-      give_up_m.push_back(rival != nullptr ? WorthUpTo(wave.back(), *rival)
-                                           : std::numeric_limits<double>::infinity());
-    }
+    std::vector<Scored> wave = NextWave(next, give_up_m);
     const std::size_t first = scored_.size();
     std::move(wave.begin(), wave.end(), std::back_inserter(scored_));
     std::vector<Scored*> asked;
@@ -212,7 +201,7 @@ void RolloutScheduler::ScreenWaiting() {
     if (HasOf(waiting_[next], scored_)) continue;
     const CandidateMotion& motion = waiting_[next].motion;
     result_.rejections.push_back({motion.tube, motion.name, "",
-                                  "not rolled out: the " + Number(most_simulated_s_) +
+                                  "not rolled out: the " + Number(max_simulated_s_) +
                                       " s of planner.max_simulated_s are spent"});
   }
   waiting_.clear();
@@ -222,15 +211,15 @@ void RolloutScheduler::Refine() {
   for (;;) {
     std::vector<Scored*> order = InOrder();
     if (order.empty() || IsRefined(*order.front())) return;
-    if (simulated_s_ >= most_simulated_s_) return;
+    if (simulated_s_ >= max_simulated_s_) return;
     // What is left to score is asked about before a motion that cannot promise anything.
     if (!Exhausted() && !MayPromise(*order.front())) return;
-    order.resize(std::min<std::size_t>(order.size(), input_.config.refined));
+    order.resize(std::min<std::size_t>(order.size(), config().refined));
     std::erase_if(order, [this](const Scored* scored) { return IsRefined(*scored); });
     // Those with as many samples as the best: one question for all.
     const int samples = order.front()->samples;
     std::erase_if(order, [&](const Scored* scored) { return scored->samples != samples; });
-    AddSamples(order, std::min(kSamplesAtOnce, input_.config.samples - samples));
+    AddSamples(order, std::min(kSamplesAtOnce, config().samples - samples));
   }
 }
 
@@ -245,29 +234,27 @@ std::vector<Scored*> RolloutScheduler::InOrder() {
 }
 
 bool RolloutScheduler::IsRefined(const Scored& scored) const {
-  return scored.score.status != CandidateScore::Status::kDone ||
-         scored.samples >= input_.config.samples;
+  return scored.score.status != CandidateScore::Status::kDone || scored.samples >= config().samples;
 }
 
 // To take its tube alone.
 bool RolloutScheduler::Promises(const CandidateScore& score) const {
-  return ExtraProbability(score, input_.part) <= input_.config.accept_extra;
+  return ExtraProbability(score, input_.problem.part, config()) <= config().accept_extra;
 }
 
 // Whether it would promise if it took its tube alone in all samples to come.
 bool RolloutScheduler::MayPromise(const Scored& scored) const {
   CandidateScore score = scored.score;
   const double known = static_cast<double>(score.samples.size());
-  score.samples.resize(std::max<std::size_t>(score.samples.size(), input_.config.samples));
+  score.samples.resize(std::max<std::size_t>(score.samples.size(), config().samples));
   score.extra_probability *= known / static_cast<double>(score.samples.size());
   return Promises(score);
 }
 
 double RolloutScheduler::CostOf(const Scored& scored, const CandidateScore& score) const {
-  const PlannerConfig& config = input_.config;
-  const double share = std::min(score.displacement_m / config.max_displacement_m, 1.0);
-  return scored.grasp_cost + config.weight_trajectory * share + scored.target->cost +
-         config.weight_extra * ExtraProbability(score, input_.part);
+  const double share = std::min(score.displacement_m / config().max_displacement_m, 1.0);
+  return scored.grasp_cost + config().weight_trajectory * share + scored.target->cost +
+         config().weight_extra * ExtraProbability(score, input_.problem.part, config());
 }
 
 // The displacement with which the first roll-out of a motion makes it dearer than a rival.
@@ -282,7 +269,7 @@ double RolloutScheduler::WorthUpTo(const Scored& scored, const Scored& rival) co
     score.displacement_m = displacement_m;
     return CostOf(scored, score) <= CostOf(rival, rival.score);
   };
-  double low_m = 0.0, high_m = input_.config.max_displacement_m;
+  double low_m = 0.0, high_m = config().max_displacement_m;
   if (worth(high_m)) return std::numeric_limits<double>::infinity();
   for (int k = 0; k < kHalvings; ++k) {
     const double middle_m = 0.5 * (low_m + high_m);
@@ -314,7 +301,8 @@ void RolloutScheduler::AddSamples(const std::vector<Scored*>& motions, int sampl
     request.grasp_at_m.push_back(scored->grasp_at_m);
   }
   const double start_s = WallSeconds();
-  const EvaluationResult answer = input_.evaluate(input_.scene, input_.part, input_.bin, request);
+  const EvaluationResult answer =
+      input_.evaluate(input_.problem.scene, input_.problem.part, input_.problem.bin, request);
   TT_CHECK(answer.candidates.size() == motions.size());
   result_.evaluator_s += WallSeconds() - start_s;
   result_.evaluation.settle_s += answer.settle_s;

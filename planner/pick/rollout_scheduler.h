@@ -1,13 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "planner/extraction/motions.h"
-#include "planner/grasp/grasps.h"
-#include "planner/pick/plan.h"
+#include "planner/pick/grasp_choice.h"
+#include "planner/pick/pick_plan.h"
 
 namespace tubetwin {
 
@@ -34,34 +32,27 @@ struct Scored {
 };
 
 /// Probability that another tube comes along: the samples' share drawn towards what the predicted
-/// displacement says (after a tip, which sheds what it displaced: towards a constant), which counts
-/// as some samples. A motion that touches nothing: 0.
-double ExtraProbability(const CandidateScore& score, const Part& part);
-
-/// The first of some grasps with which the arm can run a motion; none: it reports why.
-using RunnableFunction = std::function<std::optional<Grasp>(const CandidateMotion& motion,
-                                                            const std::vector<Grasp>& grasps)>;
+/// displacement says (after a motion that sheds by tilting: towards a constant), which counts as
+/// some samples (SearchConfig). A motion that touches nothing: 0.
+double ExtraProbability(const CandidateScore& score, const Part& part, const SearchConfig& config);
 
 /// What a search needs to know; all must outlive it.
 struct SearchInput {
-  const TubeScene& scene;
-  const Part& part;
-  const Bin& bin;
-  const PlannerConfig& config;
+  const PickProblem& problem;
   const EvaluateFunction& evaluate;
-  const RunnableFunction& runnable;
+  GraspChoice& choice;
   std::uint64_t seed = 1;
   double top_m = 0.0;  ///< Of the highest tube.
 };
 
 /// Scores motions of covered tubes in the order of `targets`, in batches of about `max_candidates`:
-/// "up", escapes and ways out of every tube, then tilts and tips, a tube at a time, for the
-/// `separated` best, then the long list of separations likewise. Each motion is rolled out once,
-/// those that touch the fewest tubes first, as far as it may still be among the best `refined`;
-/// then these with all samples, until the best of all has them: one lucky roll-out wins too easily
-/// among many. A best motion that cannot promise anything waits with its samples until all have
-/// been rolled out once. What the arm cannot run is not rolled out. Candidates, rejections and
-/// times go into the result.
+/// those of the registry's first tier of every tube, then those of the second, a tube at a time,
+/// for the `separated` best, then those of the last likewise. Each motion is rolled out once, those
+/// that touch the fewest tubes first, as far as it may still be among the best `refined`; then
+/// these with all samples, until the best of all has them: one lucky roll-out wins too easily among
+/// many. A best motion that cannot promise anything waits with its samples until all have been
+/// rolled out once. What the arm cannot run is not rolled out. Candidates, rejections and times go
+/// into the result.
 class RolloutScheduler {
  public:
   RolloutScheduler(const SearchInput& input, const std::vector<Target>& targets,
@@ -86,13 +77,14 @@ class RolloutScheduler {
   };
 
   bool Exhausted();
+  const PlannerConfig& config() const { return input_.problem.config; }
   static bool HasOf(const Waiting& waiting, const std::vector<Scored>& among);
   const Target* NextWithout(const std::vector<const Target*>& had);
   void ScoreMore();
   void AddLongList();
-  void AddMotions(const Target& target);
-  void AddMotions(const Target& target, MotionSet set);
+  void AddMotions(const Target& target, ExtractionMotion::Tier tier);
   void ScreenWaiting();
+  std::vector<Scored> NextWave(std::size_t& next, std::vector<double>& give_up_m);
   void Refine();
   std::vector<Scored*> InOrder();
   bool IsRefined(const Scored& scored) const;
@@ -107,9 +99,9 @@ class RolloutScheduler {
   const SearchInput input_;
   const std::vector<Target>& targets_;
   PlanResult& result_;
-  const double most_simulated_s_;
+  const double max_simulated_s_;
   std::size_t next_ = 0;
-  std::vector<const Target*> tipped_, separated_;
+  std::vector<const Target*> had_second_, had_last_;  ///< Targets that had motions of those tiers.
   double simulated_s_ = 0.0;
   std::vector<Waiting> waiting_;
   std::vector<Scored> scored_;

@@ -3,7 +3,7 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kUpright_rad = 0.01;  // Below what weighing would notice.
+constexpr double kUpright_rad = 0.01;
 constexpr double kSameTurn_rad = 1e-6;
 constexpr double kNoMove_m = 1e-9;
 
@@ -13,13 +13,13 @@ Eigen::AngleAxisd TurnDown(const RigidTransform& X_NE) {
       Eigen::Quaterniond::FromTwoVectors(X_NE.linear().col(2), -Vector3::UnitZ()));
 }
 
-bool PointsDown(const RigidTransform& X_NE) { return TurnDown(X_NE).angle() < kUpright_rad; }
-
 double AngleBetween(const RigidTransform& a, const RigidTransform& b) {
   return Eigen::AngleAxisd(Matrix3(a.linear().transpose() * b.linear())).angle();
 }
 
 }  // namespace
+
+bool PointsDown(const RigidTransform& X_NE) { return TurnDown(X_NE).angle() < kUpright_rad; }
 
 std::vector<RigidTransform> ToolPath(const ObjectPath& way, const RigidTransform& X_NE_grasp) {
   std::vector<RigidTransform> out;

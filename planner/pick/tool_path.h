@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "planner/extraction/motion_types.h"
+#include "planner/scene_query/object_path.h"
 
 namespace tubetwin {
 
@@ -10,6 +10,9 @@ namespace tubetwin {
 /// and the tube goes along `way`. Where the tool does not point down at the end, it then turns
 /// about E, the shortest way, until it does: that is how it weighs and places.
 std::vector<RigidTransform> ToolPath(const ObjectPath& way, const RigidTransform& X_NE_grasp);
+
+/// Whether the tool points down, to within 0.01 rad: below what weighing would notice. In N or B.
+bool PointsDown(const RigidTransform& X_NE);
 
 /// The pose turned about E, the shortest way, until the tool points down; unchanged where it does
 /// to within 0.01 rad.

@@ -5,6 +5,7 @@
 
 #include "models/base/error.h"
 #include "models/gripper_spec.h"
+#include "planner/scene_query/tubes.h"
 
 namespace tubetwin {
 namespace {
@@ -57,7 +58,7 @@ struct Track {
   bool slides_first = false;  // What lies against the tube is dragged at once.
 };
 
-Track TrackOf(const CandidateMotion& motion, const Polyline& moving) {
+Track TrackOf(const TubePath& motion, const Polyline& moving) {
   double reach_m = 0.0;
   for (const Vector3& p : moving) reach_m = std::max(reach_m, (p - motion.pivot_N).norm());
   Track track{PosesAlong(motion, kStep_m, reach_m)};
@@ -89,20 +90,13 @@ bool Touches(const Polyline& moving, const Polyline& other, double radii_m, cons
   return false;
 }
 
-const PerceivedTube& MovedTube(const TubeScene& scene, const CandidateMotion& motion) {
-  const auto found = std::find_if(scene.tubes.begin(), scene.tubes.end(),
-                                  [&](const PerceivedTube& t) { return t.id == motion.tube; });
-  TT_CHECK(found != scene.tubes.end());
-  return *found;
-}
-
-// Ids of the others that it touches, at most `most` of them.
-std::vector<int> Touched(const TubeScene& scene, const CandidateMotion& motion,
-                         const Polyline& moving, double radius_m, const Track& track,
-                         double margin_m, std::size_t most) {
+// Ids of the others that it touches, at most `max_count` of them.
+std::vector<int> Touched(const TubeScene& scene, const TubePath& motion, const Polyline& moving,
+                         double radius_m, const Track& track, double margin_m,
+                         std::size_t max_count) {
   std::vector<int> touched;
   for (const PerceivedTube& other : scene.tubes) {
-    if (touched.size() == most) break;
+    if (touched.size() == max_count) break;
     if (other.id == motion.tube) continue;
     if (Touches(moving, Simplify(other.centerline_N, kChord_m), radius_m + other.radius_m, track,
                 margin_m)) {
@@ -112,12 +106,13 @@ std::vector<int> Touched(const TubeScene& scene, const CandidateMotion& motion,
   return touched;
 }
 
-std::vector<int> TouchedByTube(const TubeScene& scene, const CandidateMotion& motion,
-                               double margin_m, std::size_t most) {
+std::vector<int> TouchedByTube(const TubeScene& scene, const TubePath& motion, double margin_m,
+                               std::size_t max_count) {
   TT_CHECK(!motion.waypoints_N.empty());
-  const PerceivedTube& tube = MovedTube(scene, motion);
+  const PerceivedTube& tube = TubeOf(scene, motion.tube);
   const Polyline moving = Simplify(tube.centerline_N, kChord_m);
-  return Touched(scene, motion, moving, tube.radius_m, TrackOf(motion, moving), margin_m, most);
+  return Touched(scene, motion, moving, tube.radius_m, TrackOf(motion, moving), margin_m,
+                 max_count);
 }
 
 std::optional<int> First(const std::vector<int>& ids) {
@@ -138,21 +133,20 @@ Polyline Simplify(const Polyline& line, double tolerance_m) {
   return out;
 }
 
-std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& motion,
-                                double margin_m) {
+std::optional<int> FirstTouched(const TubeScene& scene, const TubePath& motion, double margin_m) {
   return First(TouchedByTube(scene, motion, margin_m, 1));
 }
 
-int CountTouched(const TubeScene& scene, const CandidateMotion& motion, double margin_m) {
+int CountTouched(const TubeScene& scene, const TubePath& motion, double margin_m) {
   return static_cast<int>(TouchedByTube(scene, motion, margin_m, scene.tubes.size()).size());
 }
 
-std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const CandidateMotion& motion,
+std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const TubePath& motion,
                                          const Vector3& p_N, double margin_m) {
   TT_CHECK(!motion.waypoints_N.empty());
   const GripperSpec gripper;
   const double radius_m = std::hypot(
-      0.5 * gripper.pad_width_m, MovedTube(scene, motion).radius_m + gripper.finger_thickness_m);
+      0.5 * gripper.pad_width_m, TubeOf(scene, motion.tube).radius_m + gripper.finger_thickness_m);
   const Polyline fingers = {p_N, p_N + Vector3(0, 0, kFingers_m)};
   const Track track = TrackOf(motion, fingers);
   if (track.rising_from == 0) return std::nullopt;

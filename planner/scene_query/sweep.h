@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "perception/scene/tube_scene.h"
-#include "planner/extraction/motion_types.h"
+#include "planner/scene_query/object_path.h"
 
 namespace tubetwin {
 
@@ -17,15 +17,15 @@ Polyline Simplify(const Polyline& line, double tolerance_m);
 /// that begins with a slide is dragged, and one that overlaps by more than 3 mm is pushed. The
 /// moving tube is rigid here; legs are looked at every 5 mm. Nothing: the motion disturbs no
 /// perceived tube. Precondition: the motion's tube is in the scene.
-std::optional<int> FirstTouched(const TubeScene& scene, const CandidateMotion& motion,
+std::optional<int> FirstTouched(const TubeScene& scene, const TubePath& motion,
                                 double margin_m = 0.003);
 
 /// How many tubes it touches.
-int CountTouched(const TubeScene& scene, const CandidateMotion& motion, double margin_m = 0.003);
+int CountTouched(const TubeScene& scene, const TubePath& motion, double margin_m = 0.003);
 
 /// The same for the closed fingers that hold the tube at p_N, as an upright cylinder around them. A
 /// motion that only rises takes them out as they came in: nothing.
-std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const CandidateMotion& motion,
+std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const TubePath& motion,
                                          const Vector3& p_N, double margin_m = 0.003);
 
 }  // namespace tubetwin

@@ -7,8 +7,8 @@
 
 namespace tubetwin {
 
-std::vector<Vector3> ThinPoints(const std::vector<OrganizedCloud>& views, const Bin& bin,
-                                double cube_m, double top_m) {
+std::vector<Vector3> VoxelDownsample(const std::vector<OrganizedCloud>& views, const Bin& bin,
+                                     double cube_m, double top_m) {
   TT_CHECK(cube_m > 0.0 && top_m > 0.0);
   constexpr float kOff_m = 0.003f;  // Floor, walls and their noise are no obstacles of their own.
   const float x_max = static_cast<float>(bin.half_x_m()) - kOff_m;

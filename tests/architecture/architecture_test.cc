@@ -43,7 +43,7 @@ int Run(const std::string& command, const std::string& log) {
 
 TEST_CASE("the sources of every room are found") {
   for (const char* room : {"models/base", "models", "hw_bridge/cell", "scenes", "perception",
-                           "planner", "twin/render", "twin/cell"}) {
+                           "planner/cycle", "twin/render", "twin/cell"}) {
     CHECK(std::any_of(Sources().begin(), Sources().end(),
                       [&](const SourceFile& f) { return RoomOf(f.path) == room; }));
   }
@@ -192,9 +192,9 @@ TEST_CASE("all sources are formatted") {
 
 TEST_CASE("each rule finds what breaks it") {
   const std::string mujoco = "#include <mujoco/mujoco.h>\n";
-  CHECK(CheckRoomIncludes(One("planner/a.cc", "#include \"scenes/pile.h\"\n")) ==
-        std::vector<std::string>{"planner/a.cc includes \"scenes/pile.h\", but planner may not "
-                                 "include scenes"});
+  CHECK(CheckRoomIncludes(One("planner/pick/a.cc", "#include \"scenes/pile.h\"\n")) ==
+        std::vector<std::string>{"planner/pick/a.cc includes \"scenes/pile.h\", but planner/pick "
+                                 "may not include scenes"});
   CHECK(CheckRoomIncludes(One("perception/a.h", "#include \"hw_bridge/cell/cell.h\"\n")).size() ==
         1);
   CHECK(CheckRoomIncludes(One("hw_bridge/drivers/ati/a.cc", "#  include \"twin/cell/x.h\"\n"))
@@ -202,7 +202,7 @@ TEST_CASE("each rule finds what breaks it") {
   CHECK(CheckRoomIncludes(One("models/a.cc", "#include \"arm.h\"\n")).size() == 1);
   CHECK(CheckRoomIncludes(One("extra/a.cc", "")).size() == 1);
   CHECK(CheckRoomIncludes(One("planner/evaluator/a.cc", "#include \"scenes/pile.h\"\n")).empty());
-  CHECK(CheckThirdParty(One("planner/a.cc", mujoco)).size() == 1);
+  CHECK(CheckThirdParty(One("planner/pick/a.cc", mujoco)).size() == 1);
   CHECK(CheckThirdParty(One("perception/a.cc", mujoco)).size() == 1);
   CHECK(CheckThirdParty(One("planner/evaluator/a.cc", mujoco)).empty());
   CHECK(CheckThirdParty(One("perception/a.cc", "#include <sys/socket.h>\n")).size() == 1);

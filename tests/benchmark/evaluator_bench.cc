@@ -15,9 +15,9 @@
 #include "models/base/parallel.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/evaluator/rollout.h"
-#include "planner/extraction/more_motions.h"
 #include "scenes/pile.h"
 #include "tests/benchmark/ode_lift.h"
+#include "tests/support/planning.h"
 
 namespace tubetwin {
 namespace {
@@ -48,7 +48,7 @@ EvaluationRequest Ups(const TubeScene& scene, bool full) {
   EvaluationRequest request;
   request.full = full;
   for (const PerceivedTube& tube : scene.tubes) {
-    request.candidates.push_back(UpMotion(tube, {}));
+    request.candidates.push_back(StraightUp({scene, tube, Bin{}, {}}));
     request.grasp_at_m.push_back(0.5 * tube.length_m);
   }
   return request;
@@ -61,7 +61,7 @@ EvaluationRequest SixtyFour(const TubeScene& scene, const Bin& bin) {
   for (const bool covered : {true, false}) {
     for (const PerceivedTube& tube : scene.tubes) {
       if ((tube.tube_class != TubeClass::kFree) != covered) continue;
-      for (CandidateMotion& motion : MakeMotions(scene, tube, bin, {}).motions) {
+      for (CandidateMotion& motion : MotionsOf(kPaperKinds, scene, tube, bin).motions) {
         if (request.candidates.size() == 16) break;
         request.grasp_at_m.push_back(0.5 * tube.length_m);
         request.candidates.push_back(std::move(motion));
@@ -78,7 +78,8 @@ void PlainRollouts(const Pile& pile, const EvaluationRequest& request) {
   config.tolerance = 1e-8;
   for (std::size_t k = 0; k < request.candidates.size(); ++k) {
     const RolloutScene scene(pile.tubes, pile.part, pile.bin, pile.part.friction,
-                             pile.part.bending_stiffness_Nm2, config);
+                             pile.part.bending_stiffness_Nm2,
+                             {Parallelism{1}, config, FirstGripper()});
     const MjModel model(mj_copyModel(nullptr, &scene.model()));
     const MjData data = MakeData(*model);
     RollOut(scene, static_cast<int>(k), 0.5, request.candidates[k], true, config, *model, *data);
@@ -114,8 +115,8 @@ void Measure(const Case& which, int piles, int repeats) {
     const TubeScene scene = SceneOf(pile);
     const EvaluationRequest full = Ups(scene, true), cut = Ups(scene, false);
     const EvaluationRequest many = SixtyFour(scene, pile.bin);
-    const EvaluateFunction one = MakeEvaluator({Parallelism{1}, {}});
-    const EvaluateFunction two = MakeEvaluator({Parallelism{2}, {}});
+    const EvaluateFunction one = MakeEvaluator({Parallelism{1}, {}, FirstGripper()});
+    const EvaluateFunction two = MakeEvaluator({Parallelism{2}, {}, FirstGripper()});
     const auto run = [&](const EvaluateFunction& evaluate, const EvaluationRequest& request) {
       return Seconds([&] { evaluate(scene, part, pile.bin, request); });
     };

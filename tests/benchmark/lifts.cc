@@ -27,13 +27,13 @@
 #include "perception/perceive.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/evaluator/rollout.h"
-#include "planner/extraction/motions.h"
 #include "planner/grasp/grasps.h"
-#include "planner/pick/arm_feasibility.h"
+#include "planner/pick/make_path.h"
 #include "planner/pick/pick_planner.h"
 #include "planner/pick/rollout_scheduler.h"
 #include "planner/scene_query/voxel_downsample.h"
 #include "scenes/pile.h"
+#include "tests/support/planning.h"
 #include "twin/render/scan/ray_scene.h"
 
 namespace tubetwin {
@@ -118,7 +118,7 @@ class TrueWorld {
  public:
   TrueWorld(const Pile& pile, const RoundPhysics& physics)
       : scene_(Scaled(pile.tubes, physics.mass_scale), pile.part, pile.bin, physics.tube_friction,
-               physics.bending_stiffness_Nm2, Fine()),
+               physics.bending_stiffness_Nm2, {Parallelism{1}, Fine(), FirstGripper()}),
         model_(mj_copyModel(nullptr, &scene_.model())),
         data_(MakeData(*model_)) {}
 
@@ -226,17 +226,19 @@ class Trial {
     request.seed = static_cast<std::uint64_t>(seed_);
     std::vector<const PerceivedTube*> tubes;
     RandomStream pick = stream_.Fork("pick");
-    const std::vector<Vector3> points_N = ThinPoints(views_, pile_.bin);
+    const std::vector<Vector3> points_N = VoxelDownsample(views_, pile_.bin);
+    const GraspInput grasps{scene_,         points_N, pile_.bin,
+                            FirstGripper(), config_,  config_.grasp_step_m};
     for (const PerceivedTube& tube : scene_.tubes) {
       if (tube.tube_class == TubeClass::kFree) continue;
-      const GraspSites sites = FindGraspSites(scene_, tube, points_N, pile_.bin, config_);
-      const MotionSet set = MakeMotions(scene_, tube, pile_.bin, config_);
+      const GraspSites sites = FindGraspSites(grasps, tube);
+      const MotionSet set = MotionsOf(kPaperKinds, scene_, tube, pile_.bin, config_);
       const auto k = static_cast<std::size_t>(pick.Uniform(0.0, 1.0) * set.motions.size());
       const CandidateMotion& motion = set.motions[std::min(k, set.motions.size() - 1)];
-      const GraspSet grasps = RankGrasps(sites, tube, motion, 0.0, 1.0, pile_.bin, config_);
-      if (grasps.grasps.empty()) continue;
+      const GraspSet ranked = RankGrasps(grasps, sites, tube, motion, 0.0, 1.0);
+      if (ranked.grasps.empty()) continue;
       request.candidates.push_back(motion);
-      request.grasp_at_m.push_back(grasps.grasps.front().at_m);
+      request.grasp_at_m.push_back(ranked.grasps.front().at_m);
       tubes.push_back(&tube);
     }
     std::vector<Json> rows;
@@ -246,7 +248,8 @@ class Trial {
       const CandidateScore& score = result.candidates[k];
       Json predicted = ToJson(std::optional(Prediction{
           score.displacement_m, score.extra_probability, static_cast<int>(score.samples.size())}));
-      predicted["probability"] = ExtraProbability(score, part_);  // What the choice goes by.
+      predicted["probability"] =
+          ExtraProbability(score, part_, config_);  // What the choice goes by.
       rows.push_back(
           Row("lift", *tubes[k], request.candidates[k], request.grasp_at_m[k], predicted));
     }
@@ -255,10 +258,12 @@ class Trial {
 
   Json Choice() {
     const MotionPlanner motion(Hc10(), CellLayout(), pile_.bin);
-    const PlanResult result =
-        PlanPicks(scene_, ThinPoints(views_, pile_.bin), part_, pile_.bin, config_, Evaluate(),
-                  ArmFeasibility(motion, CellLayout(), pile_.bin, part_.radius_m),
-                  static_cast<std::uint64_t>(seed_));
+    const std::vector<Vector3> points_N = VoxelDownsample(views_, pile_.bin);
+    const PathConfig paths;
+    const PlanResult result = PlanPicks(
+        {scene_, points_N, part_, pile_.bin, FirstGripper(), config_, ExtractionMotionsOf(config_)},
+        Evaluate(), PathFeasibility(motion, pile_.bin, paths, part_.radius_m),
+        static_cast<std::uint64_t>(seed_));
     Json row{{"seed", seed_}, {"kind", "choice"}, {"motion", nullptr}};
     if (!result.plans.empty()) {
       const PickPlan& plan = result.plans.front();
@@ -273,7 +278,9 @@ class Trial {
     return row;
   }
 
-  EvaluateFunction Evaluate() const { return MakeEvaluator({Parallelism{options_.threads}, {}}); }
+  EvaluateFunction Evaluate() const {
+    return MakeEvaluator({Parallelism{options_.threads}, {}, FirstGripper()});
+  }
 
   const Options& options_;
   const int seed_;

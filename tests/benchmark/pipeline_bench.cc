@@ -9,8 +9,8 @@
 #include "models/layout.h"
 #include "perception/perceive.h"
 #include "planner/evaluator/evaluator.h"
-#include "planner/extraction/motions.h"
 #include "scenes/pile.h"
+#include "tests/support/planning.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/cell/twin_cell.h"
 
@@ -113,10 +113,10 @@ void BM_EvaluateFull(benchmark::State& state) {
   EvaluationRequest request;
   request.full = true;
   for (const PerceivedTube& tube : scene.tubes) {
-    request.candidates.push_back(UpMotion(tube, {}));
+    request.candidates.push_back(StraightUp({scene, tube, Bin{}, {}}));
     request.grasp_at_m.push_back(0.5 * tube.length_m);
   }
-  const EvaluateFunction evaluate = MakeEvaluator({Parallelism::All(), {}});
+  const EvaluateFunction evaluate = MakeEvaluator({Parallelism::All(), {}, FirstGripper()});
   for (auto _ : state) {
     benchmark::DoNotOptimize(evaluate(scene, SevenTubes().part, SevenTubes().bin, request));
   }

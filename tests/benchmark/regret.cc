@@ -31,14 +31,17 @@
 #include "models/layout.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/grasp/grasps.h"
-#include "planner/pick/arm_feasibility.h"
+#include "planner/pick/make_path.h"
 #include "planner/pick/pick_planner.h"
 #include "planner/pick/rollout_scheduler.h"
 #include "scenes/pile.h"
+#include "tests/support/planning.h"
 #include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
 namespace {
+
+const std::vector<Vector3> kNoPoints;
 
 constexpr int kSamples = 5;
 // The evaluator's: what a sample adds in which another tube comes along, a jam, a divergence.
@@ -120,7 +123,7 @@ class Reference {
         pile_(pile),
         offers_(offers),
         seed_(seed),
-        evaluate_(MakeEvaluator({Parallelism{threads}, Fine()})),
+        evaluate_(MakeEvaluator({Parallelism{threads}, Fine(), FirstGripper()})),
         sums_(offers.size()) {}
 
   /// The cost of an offer by all samples, or a lower bound above `limit_m` of it.
@@ -205,7 +208,7 @@ class Trial {
         pile_(pile),
         scene_(scene),
         motion_(Hc10(), CellLayout(), pile.bin),
-        feasible_(ArmFeasibility(motion_, CellLayout(), pile.bin, pile.part.radius_m)) {
+        feasible_(PathFeasibility(motion_, pile_.bin, paths_, pile.part.radius_m)) {
     ConfigSource source;
     for (const std::string& text : options.overrides) source.AddOverride(text);
     source.Read([this](ConfigVisitor& v) {
@@ -216,9 +219,11 @@ class Trial {
   }
 
   Json Run() {
-    const PlanResult plan = PlanPicks(scene_, {}, pile_.part, pile_.bin, planner_,
-                                      MakeEvaluator({Parallelism{options_.threads}, evaluator_}),
-                                      feasible_, pile_.seed);
+    const PlanResult plan =
+        PlanPicks({scene_, kNoPoints, pile_.part, pile_.bin, FirstGripper(), planner_,
+                   ExtractionMotionsOf(planner_)},
+                  MakeEvaluator({Parallelism{options_.threads}, evaluator_, FirstGripper()}),
+                  feasible_, pile_.seed);
     Json row{{"choice", nullptr}, {"asked", plan.evaluation.candidates.size()}};
     if (plan.plans.empty()) return row;
     const PickPlan& chosen = plan.plans.front();
@@ -251,8 +256,10 @@ class Trial {
     for (const PerceivedTube& seen : scene_.tubes) {
       for (const Vector3& p : seen.centerline_N) top_m = std::max(top_m, p.z());
     }
-    const GraspSites sites = FindGraspSites(scene_, *tube, {}, pile_.bin, planner_);
-    for (Grasp& grasp : RankGrasps(sites, *tube, motion, 0.0, top_m, pile_.bin, planner_).grasps) {
+    const GraspInput input{scene_,         kNoPoints, pile_.bin,
+                           FirstGripper(), planner_,  planner_.grasp_step_m};
+    const GraspSites sites = FindGraspSites(input, *tube);
+    for (Grasp& grasp : RankGrasps(input, sites, *tube, motion, 0.0, top_m).grasps) {
       if (!feasible_(grasp, motion)) return grasp.at_m;
       grasp.X_NG.linear() = grasp.X_NG.linear() * RotZ(kPi);
       if (!feasible_(grasp, motion)) return grasp.at_m;
@@ -300,6 +307,7 @@ class Trial {
   const Pile& pile_;
   const TubeScene& scene_;
   const MotionPlanner motion_;
+  const PathConfig paths_;
   const FeasibilityFunction feasible_;
   PlannerConfig planner_;
   EvaluatorConfig evaluator_;

@@ -7,8 +7,9 @@
 #include "models/base/json.h"
 #include "models/part.h"
 #include "planner/evaluator/rollout.h"
-#include "planner/extraction/motions.h"
+#include "planner/extraction/generators.h"
 #include "tests/support/catch.h"
+#include "tests/support/planning.h"
 #include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
@@ -29,6 +30,7 @@ EvaluationResult Evaluate(const TubeScene& scene, const EvaluationRequest& reque
                           const std::string& part = "pvc_a", int threads = 1) {
   EvaluatorOptions options;
   options.parallelism.threads = threads;
+  options.gripper = FirstGripper();
   return MakeEvaluator(options)(scene, LoadPart(part), Bin{}, request);
 }
 
@@ -182,6 +184,7 @@ TEST_CASE("A roll-out is given up once it has displaced the others by too much",
   const TubeScene scene = Balanced();
   EvaluatorOptions options;
   options.config.give_up_m = 0.1;
+  options.gripper = FirstGripper();
   const auto evaluate = MakeEvaluator(options);
   // As it goes aside in the end, riding along tells nothing before.
   EvaluationRequest request =
@@ -224,7 +227,7 @@ TEST_CASE("Scores depend neither on threads nor on order nor on what ran before"
                    kRadius);
   std::vector<CandidateMotion> candidates;
   for (const PerceivedTube& tube : scene.tubes) {
-    for (const CandidateMotion& motion : MakeMotions(scene, tube, Bin{}, PlannerConfig{}).motions) {
+    for (const CandidateMotion& motion : MotionsOf(kPaperKinds, scene, tube).motions) {
       candidates.push_back(motion);
     }
   }
@@ -328,7 +331,8 @@ TEST_CASE("The hand turns what it holds as told, as far as its torque allows", "
       PerfectScene({StraightLine({-0.25, 0, 0.0125}, {0.25, 0, 0.0125})}, kRadius);
   const EvaluatorConfig config;
   const Part part = LoadPart("pvc_a");
-  const RolloutScene world(scene, part, Bin{}, DrawSample(part, 1, 0, 1, config), config);
+  const RolloutScene world(scene, part, Bin{}, DrawSample(part, 1, 0, 1, config),
+                           {Parallelism{1}, config, FirstGripper()});
   MjModel model(mj_copyModel(nullptr, &world.model()));
   MjData data = MakeData(*model);
   CandidateMotion motion = Motion(1, "turn", {{0, 0, 0}, {0, 0, 0.3}, {0, 0, 0.3}, {0, 0, 0.3}});

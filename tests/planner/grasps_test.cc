@@ -5,6 +5,7 @@
 #include "planner/grasp/gripper_boxes.h"
 #include "planner/scene_query/box_distance.h"
 #include "tests/support/catch.h"
+#include "tests/support/planning.h"
 #include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
@@ -15,7 +16,13 @@ const std::vector<Vector3> kNoPoints;
 
 GraspSites Sites(const TubeScene& scene, int index,
                  const std::vector<Vector3>& points_N = kNoPoints) {
-  return FindGraspSites(scene, scene.tubes[index], points_N, Bin{}, PlannerConfig{});
+  return FindGraspSites({scene, points_N, Bin{}, FirstGripper(), GraspConfig{}},
+                        scene.tubes[index]);
+}
+
+GraspSet Ranked(const TubeScene& scene, const CandidateMotion& motion, double top_m) {
+  return RankGrasps({scene, kNoPoints, Bin{}, FirstGripper(), GraspConfig{}}, Sites(scene, 0),
+                    scene.tubes[0], motion, 0.0, top_m);
 }
 
 CandidateMotion Up() {
@@ -154,8 +161,7 @@ TEST_CASE("The ranking prefers the true centre of mass, then high places", "[uni
   const Polyline rest = StraightLine({0.15, 0, kRadius}, {0.15, 0.35, kRadius});
   bent.insert(bent.end(), rest.begin() + 1, rest.end());
   const TubeScene scene = PerfectScene({Shifted(bent, Vector3(-0.1, -0.15, 0))}, kRadius);
-  const GraspSet set =
-      RankGrasps(Sites(scene, 0), scene.tubes[0], Up(), 0.0, kRadius, Bin{}, PlannerConfig{});
+  const GraspSet set = Ranked(scene, Up(), kRadius);
   REQUIRE_FALSE(set.grasps.empty());
   const Polyline& line = scene.tubes[0].centerline_N;
   const Vector3 centre = CurveCentre(line);
@@ -166,8 +172,7 @@ TEST_CASE("The ranking prefers the true centre of mass, then high places", "[uni
 
   // A tube that leans: of two places equally far from the centre the higher one is cheaper.
   const TubeScene leaning = PerfectScene({StraightLine({-0.2, 0, 0.02}, {0.2, 0, 0.08})}, kRadius);
-  const GraspSet ranked =
-      RankGrasps(Sites(leaning, 0), leaning.tubes[0], Up(), 0.0, 0.08, Bin{}, PlannerConfig{});
+  const GraspSet ranked = Ranked(leaning, Up(), 0.08);
   double low_cost = 0.0, high_cost = 0.0;
   const double middle = 0.5 * leaning.tubes[0].length_m;
   for (const Grasp& grasp : ranked.grasps) {
@@ -185,8 +190,7 @@ TEST_CASE("No grasp lies in the section that an escape forbids", "[unit]") {
   motion.name = "escape+";
   motion.forbidden_from_m = 0.0;
   motion.forbidden_to_m = 0.25;
-  const GraspSet set =
-      RankGrasps(Sites(scene, 0), scene.tubes[0], motion, 0.0, kRadius, Bin{}, PlannerConfig{});
+  const GraspSet set = Ranked(scene, motion, kRadius);
   REQUIRE_FALSE(set.grasps.empty());
   for (const Grasp& grasp : set.grasps) CHECK(grasp.at_m > 0.25);
   CHECK(AnyReason(set.rejections, "would pass under the other tube"));
@@ -222,7 +226,7 @@ TEST_CASE("A tube under an overhang is grasped by a tool that leans away from it
   const GraspSites found = Sites(scene, 0);
   CHECK(AnyReason(found.rejections, "chassis"));
   REQUIRE(!found.sites.empty());
-  const PlannerConfig config;
+  const GraspConfig config;
   for (const GraspSite& site : found.sites) {
     CHECK(TiltOf(site.grasp) > Radians(5.0));
     CHECK(TiltOf(site.grasp) <= Radians(35.0) + 1e-9);
@@ -245,7 +249,8 @@ TEST_CASE("A leaning tool keeps its fingers over the floor", "[unit]") {
                       StraightLine({-0.25, room, height + 0.09}, {0.25, room, height + 0.09})},
                      kRadius);
     for (const GraspSite& site : Sites(scene, 0).sites) {
-      const GripperBoxes boxes = MakeGripperBoxes(site.grasp.opening_m, kRadius, 0.0);
+      const GripperBoxes boxes =
+          MakeGripperBoxes(FirstGripper(), site.grasp.opening_m, kRadius, 0.0);
       const OrientedBox fingers = Moved(site.grasp.X_NG, boxes.fingers);
       const double low = fingers.X_AB.translation().z() -
                          fingers.X_AB.linear().row(2).cwiseAbs().dot(fingers.half_m);

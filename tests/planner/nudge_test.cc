@@ -6,8 +6,9 @@
 #include "models/gripper_spec.h"
 #include "planner/grasp/grasps.h"
 #include "planner/grasp/gripper_boxes.h"
-#include "planner/pick/arm_feasibility.h"
+#include "planner/pick/make_path.h"
 #include "tests/support/catch.h"
+#include "tests/support/planning.h"
 #include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
@@ -23,7 +24,14 @@ std::optional<std::string> AnyNudge(const Nudge&) { return std::nullopt; }
 
 NudgeResult Plan(const TubeScene& scene, const FeasibilityFunction& grasp = AnyGrasp,
                  const NudgeFeasibility& feasible = AnyNudge) {
-  return PlanNudge(scene, kNoPoints, Bin{}, PlannerConfig{}, grasp, feasible);
+  const PlannerConfig config;
+  const Part part;
+  const Bin bin;
+  return PlanNudge({scene, kNoPoints, part, bin, FirstGripper(), config, {}}, grasp, feasible);
+}
+
+GraspSites Sites(const TubeScene& scene) {
+  return FindGraspSites({scene, kNoPoints, Bin{}, FirstGripper(), GraspConfig{}}, scene.tubes[0]);
 }
 
 bool AnyReason(const NudgeResult& result, int tube, const std::string& text) {
@@ -48,7 +56,7 @@ TEST_CASE("A straight tube at a wall is rolled inward as far as a finger needs b
     const double y = kHalfY - kRadius - gap;
     const TubeScene scene =
         PerfectScene({StraightLine({-0.25, y, kRadius}, {0.25, y, kRadius})}, kRadius);
-    REQUIRE(FindGraspSites(scene, scene.tubes[0], kNoPoints, Bin{}, {}).sites.empty());
+    REQUIRE(Sites(scene).sites.empty());
     const NudgeResult result = Plan(scene);
     REQUIRE(result.nudge);
     const Nudge& nudge = *result.nudge;
@@ -163,7 +171,7 @@ TEST_CASE("Fingers keep off walls and other tubes on every nudge, and the tube e
       CHECK(stroke.travel_N.normalized().isApprox(nudge.direction_N));
       for (int k = 0; k <= 20; ++k) {
         const RigidTransform X_NE = Translation(stroke.travel_N * k / 20) * stroke.X_NE;
-        const GripperBoxes boxes = MakeGripperBoxes(0.0, kRadius, 0.0);
+        const GripperBoxes boxes = MakeGripperBoxes(FirstGripper(), 0.0, kRadius, 0.0);
         for (const OrientedBox& box : {boxes.fingers, boxes.chassis, boxes.base}) {
           const OrientedBox box_N = Moved(X_NE, box);
           CHECK(WallClearance(box_N, Bin{}, 0.01) >= kLeast_m - 1e-9);
@@ -177,7 +185,7 @@ TEST_CASE("Fingers keep off walls and other tubes on every nudge, and the tube e
     TubeScene moved = scene;
     moved.tubes[0].centerline_N =
         Shifted(scene.tubes[0].centerline_N, nudge.travel_m * nudge.direction_N);
-    CHECK_FALSE(FindGraspSites(moved, moved.tubes[0], kNoPoints, Bin{}, {}).sites.empty());
+    CHECK_FALSE(Sites(moved).sites.empty());
   }
   CHECK(nudged > 40);
 }
@@ -185,8 +193,11 @@ TEST_CASE("Fingers keep off walls and other tubes on every nudge, and the tube e
 TEST_CASE("The arm can nudge a tube at every wall of the default bin", "[unit]") {
   const CellLayout layout;
   const MotionPlanner motion(Hc10(), layout, Bin{});
-  const FeasibilityFunction grasp = ArmFeasibility(motion, layout, Bin{}, kRadius);
-  const NudgeFeasibility feasible = ArmNudgeFeasibility(motion, layout, Bin{});
+  const Bin bin;
+  const PathConfig paths;
+  const NudgeConfig nudging;
+  const FeasibilityFunction grasp = PathFeasibility(motion, bin, paths, kRadius);
+  const NudgeFeasibility feasible = NudgePathFeasibility(motion, bin, paths, nudging);
   for (const double side : {1.0, -1.0}) {
     const double x = side * (kHalfX - kRadius), y = side * (kHalfY - kRadius);
     for (const Polyline& line : {StraightLine({x, -0.25, kRadius}, {x, 0.25, kRadius}),

@@ -11,6 +11,7 @@
 #include "planner/pick/rollout_scheduler.h"
 #include "planner/scene_query/voxel_downsample.h"
 #include "tests/support/catch.h"
+#include "tests/support/planning.h"
 #include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
@@ -62,7 +63,11 @@ PlanResult Plan(const TubeScene& scene, const PlannerConfig& config, FakeEvaluat
                 const FeasibilityFunction& feasible = Always) {
   Part part;
   part.length_m = 0.40;
-  return PlanPicks(scene, {}, part, Bin{}, config, evaluator.Function(), feasible);
+  const Bin bin;
+  const std::vector<Vector3> no_points;
+  return PlanPicks(
+      {scene, no_points, part, bin, FirstGripper(), config, ExtractionMotionsOf(config)},
+      evaluator.Function(), feasible);
 }
 
 bool AnyReason(const PlanResult& result, int tube, const std::string& text) {
@@ -242,15 +247,15 @@ TEST_CASE("What a motion displaces foretells company, unless it tips the tube", 
   CandidateScore score;
   score.displacement_m = 0.3;
   score.samples.assign(5, score.displacement_m);
-  CHECK(ExtraProbability(score, hose) == Approx(0.5 * 2.2 * 0.25));
+  CHECK(ExtraProbability(score, hose, SearchConfig{}) == Approx(0.5 * 2.2 * 0.25));
   score.rotations_N = {Eigen::Quaterniond::Identity(),
                        Eigen::Quaterniond(Eigen::AngleAxisd(Radians(90.0), Vector3::UnitZ())),
                        Eigen::Quaterniond(Eigen::AngleAxisd(Radians(20.0), Vector3::UnitX()))};
-  CHECK(ExtraProbability(score, hose) == Approx(0.5 * 2.2 * 0.25));
+  CHECK(ExtraProbability(score, hose, SearchConfig{}) == Approx(0.5 * 2.2 * 0.25));
   score.rotations_N.emplace_back(Eigen::AngleAxisd(Radians(-75.0), Vector3::UnitX()));
-  CHECK(ExtraProbability(score, hose) == Approx(0.15 / 6));
+  CHECK(ExtraProbability(score, hose, SearchConfig{}) == Approx(0.15 / 6));
   score.extra_probability = 1.0;
-  CHECK(ExtraProbability(score, hose) == Approx((5 + 0.15) / 6));
+  CHECK(ExtraProbability(score, hose, SearchConfig{}) == Approx((5 + 0.15) / 6));
 }
 
 TEST_CASE("Little covered tubes are simulated first, the others only if need be", "[unit]") {
@@ -359,7 +364,7 @@ TEST_CASE("Points are thinned to one per cube, without floor and walls", "[unit]
                 {0.1f, 0, 0.001f}, {0.384f, 0, 0.05f},  InvalidPoint()};
   cloud.width = 6;
   cloud.height = 1;
-  const std::vector<Vector3> points = ThinPoints({cloud, cloud}, Bin{});
+  const std::vector<Vector3> points = VoxelDownsample({cloud, cloud}, Bin{});
   REQUIRE(points.size() == 2);
   CHECK(points[0].isApprox(Vector3(0, 0, 0.05), 1e-6));
 }

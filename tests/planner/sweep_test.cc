@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kRadius = 0.0125;
 
-CandidateMotion Motion(int tube, std::vector<Vector3> waypoints_N) {
-  CandidateMotion motion;
+TubePath Motion(int tube, std::vector<Vector3> waypoints_N) {
+  TubePath motion;
   motion.tube = tube;
   motion.waypoints_N = std::move(waypoints_N);
   return motion;
@@ -65,7 +65,7 @@ TEST_CASE("A tube that turns on the floor meets what its end sweeps over", "[uni
                     StraightLine({0.10, 0.06, kRadius}, {0.10, 0.26, kRadius}),
                     StraightLine({-0.10, 0.06, kRadius}, {-0.10, 0.26, kRadius})},
                    kRadius);
-  CandidateMotion motion = Motion(1, {Vector3::Zero(), Vector3::Zero(), {0, 0, 0.4}});
+  TubePath motion = Motion(1, {Vector3::Zero(), Vector3::Zero(), {0, 0, 0.4}});
   const auto turn = [](double angle_deg) {
     return Eigen::Quaterniond(Eigen::AngleAxisd(Radians(angle_deg), Vector3::UnitZ()));
   };
@@ -85,7 +85,7 @@ TEST_CASE("Fingers touch what lies beside the tube that they hold unless they on
                                         StraightLine({-0.2, 0.06, 0.0125}, {0.2, 0.06, 0.0125})},
                                        0.0125);
   const Vector3 held(0, 0, 0.0125);
-  const CandidateMotion aside = Motion(1, {{0, 0, 0}, {0, 0.03, 0}});
+  const TubePath aside = Motion(1, {{0, 0, 0}, {0, 0.03, 0}});
   CHECK_FALSE(FirstTouched(scene, aside).has_value());
   CHECK(FirstTouchedByFingers(scene, aside, held) == 2);
   CHECK_FALSE(FirstTouchedByFingers(scene, Motion(1, {{0, 0, 0}, {0, -0.03, 0}}), held));

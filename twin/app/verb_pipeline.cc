@@ -11,11 +11,7 @@
 #include "models/base/json.h"
 #include "models/base/text.h"
 #include "planner/evaluator/evaluator.h"
-#include "planner/extraction/more_motions.h"
-#include "planner/extraction/tilt_motions.h"
-#include "planner/pick/arm_feasibility.h"
-#include "planner/pick/nudge.h"
-#include "planner/pick/pick_planner.h"
+#include "planner/pick/planner_config.h"
 #include "twin/app/common.h"
 #include "twin/render/scan/scan_geometry.h"
 
@@ -100,52 +96,6 @@ int ScanPile(const ScanOptions& scan, const Common& common) {
   return 0;
 }
 
-// ---- plan ----
-
-int PlanScene(const std::string& file, const std::string& part_name, const Common& common) {
-  const Json json = ReadJsonFile(file);
-  const JsonView document(json, file);
-  const TubeScene scene = TubeSceneFromJson(document);
-  Part part;
-  if (!part_name.empty()) {
-    part = LoadPart(part_name);
-  } else if (const auto named = document.Optional("part")) {
-    part = PartFromJson(*named);
-  } else {
-    throw Error(ErrorKind::kUsage, file + ": names no part; give --part");
-  }
-  const auto bin_view = document.Optional("bin");
-  const Bin bin = bin_view ? BinFromJson(*bin_view) : Bin();
-  const Scenario scenario = LoadScenario({}, common);
-  const MotionPlanner motion(Hc10(), CellLayout(), bin);
-  const FeasibilityFunction feasible = ArmFeasibility(motion, CellLayout(), bin, part.radius_m);
-  PlanResult result = PlanPicks(scene, {}, part, bin, scenario.planner,
-                                MakeEvaluator({common.parallelism(), scenario.evaluator}), feasible,
-                                static_cast<std::uint64_t>(scenario.seed));
-  NudgeResult nudge;
-  if (result.plans.empty() && scenario.planner.nudges > 0) {
-    nudge = PlanNudge(scene, {}, bin, scenario.planner, feasible,
-                      ArmNudgeFeasibility(motion, CellLayout(), bin));
-    result.rejections.insert(result.rejections.end(), nudge.rejections.begin(),
-                             nudge.rejections.end());
-  }
-  Json out = ToJson(result);
-  out["nudge"] = ToJson(nudge.nudge);
-  WriteJsonFile(out, common.out);
-  if (nudge.nudge) {
-    std::printf("no plan; tube %d would be nudged by %.0f mm; %zu rejections\n", nudge.nudge->tube,
-                1e3 * nudge.nudge->travel_m, result.rejections.size());
-  } else if (result.plans.empty()) {
-    std::printf("no plan; %zu rejections\n", result.rejections.size());
-  } else {
-    const PickPlan& best = result.plans.front();
-    std::printf("%zu plans; best: tube %d (%s) by %s, cost %.3f%s\n", result.plans.size(),
-                best.target, ToString(best.target_class), best.motion.name.c_str(), best.cost,
-                best.used_simulator ? ", simulated" : "");
-  }
-  return 0;
-}
-
 // ---- evaluate ----
 
 struct EvaluateOptions {
@@ -154,6 +104,17 @@ struct EvaluateOptions {
   int samples = 1;
   bool full = false;
 };
+
+/// Every motion of the tube, of the variants of one name the first.
+std::vector<CandidateMotion> AllMotions(const ExtractionInput& input) {
+  std::vector<CandidateMotion> motions;
+  for (const ExtractionMotion& kind : ExtractionMotionsOf(input.config)) {
+    for (CandidateMotion& motion : kind.make(input).motions) {
+      if (motion.variant == 0) motions.push_back(std::move(motion));
+    }
+  }
+  return motions;
+}
 
 EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
                               const EvaluateOptions& given, const PlannerConfig& planner) {
@@ -164,18 +125,9 @@ EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
   for (const PerceivedTube& tube : scene.tubes) {
     if (given.tube && tube.id != *given.tube) continue;
     found = true;
-    std::vector<CandidateMotion> motions = MakeMotions(scene, tube, pile.bin, planner).motions;
-    for (const MotionSet& set :
-         {MakeWaysOut(scene, tube, pile.bin, planner), MakeTilts(scene, tube, pile.bin, planner),
-          MakeTips(tube, pile.bin, planner), MakeSeparations(tube, pile.bin, planner)}) {
-      for (const CandidateMotion& motion : set.motions) {
-        const auto same = [&](const CandidateMotion& m) { return m.name == motion.name; };
-        // Of what differs for the arm's sake only, the first.
-        if (std::none_of(motions.begin(), motions.end(), same)) motions.push_back(motion);
-      }
-    }
-    for (CandidateMotion& motion : motions) {
-      const bool up = motion.name == "up", escape = motion.name.rfind("escape", 0) == 0;
+    for (CandidateMotion& motion : AllMotions({scene, tube, pile.bin, planner})) {
+      const bool up = motion.kind == "up";
+      const bool escape = motion.kind == "escape" || motion.kind == "escape_away";
       if ((given.motions == "up" && !up) || (given.motions == "escape" && !escape)) continue;
       request.grasp_at_m.push_back(0.5 * tube.length_m);
       request.candidates.push_back(std::move(motion));
@@ -218,7 +170,9 @@ int EvaluatePile(const EvaluateOptions& given, const Common& common) {
   const TubeScene scene = SceneOfPile(pile);
   EvaluationRequest request = MakeRequest(scene, pile, given, scenario.planner);
   request.seed = static_cast<std::uint64_t>(scenario.seed);
-  const EvaluateFunction evaluate = MakeEvaluator({common.parallelism(), scenario.evaluator});
+  const EvaluateFunction evaluate =
+      MakeEvaluator({common.parallelism(), scenario.evaluator,
+                     MakeGripperGeometry(Hc10(), ScenarioLayout(scenario))});
   const EvaluationResult result = evaluate(scene, pile.part, pile.bin, request);
   const Json json = ToJson(result);
   WriteJsonFile(json, common.out);
@@ -252,21 +206,6 @@ void AddScanVerb(CLI::App& app, Common& common) {
   AddCommonOptions(*verb, common, "Folder for view_N.pcd and .ply", true);
   verb->callback(
       [given, &common] { common.action = [given, &common] { return ScanPile(*given, common); }; });
-}
-
-void AddPlanVerb(CLI::App& app, Common& common) {
-  auto file = std::make_shared<std::string>();
-  auto part = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("plan",
-                                      "Example: tubetwin plan tubes.json --out plan.json\n\n"
-                                      "Candidate motions, grasps, ranking, and the reasons "
-                                      "for rejections.");
-  verb->add_option("tubes", *file, "tubes.json")->required();
-  verb->add_option("--part", *part, "Part name or part file; default: what tubes.json names");
-  AddCommonOptions(*verb, common, "plan.json to write", true);
-  verb->callback([file, part, &common] {
-    common.action = [file, part, &common] { return PlanScene(*file, *part, common); };
-  });
 }
 
 void AddEvaluateVerb(CLI::App& app, Common& common) {

@@ -83,7 +83,7 @@ CellRecordingHeader CellHeader(const Scenario& scenario, const std::string& reso
 }
 
 AttemptCheckpoint HeldCycle(const RoundCheckpoint& held) {
-  return HeldStateFromJson(JsonView(held.document, held.file).Field("held").Field("cycle"));
+  return AttemptCheckpointFromJson(JsonView(held.document, held.file).Field("held").Field("cycle"));
 }
 
 std::string BelievedAttempt(const AttemptReport& report) {
@@ -129,7 +129,7 @@ ReplayResult ReplayRound(const std::string& recording_path, const ReplayOptions&
     } else {
       const Json held = Json::parse(header.held, nullptr, false);
       report = ResumeAttempt(replay.cell(), setup,
-                             HeldStateFromJson(JsonView(held, recording_path)), observer);
+                             AttemptCheckpointFromJson(JsonView(held, recording_path)), observer);
     }
     EndReplay(replay, report);
   } catch (const ReplayOver&) {

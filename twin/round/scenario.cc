@@ -151,7 +151,8 @@ PickCycleSetup ScenarioCycle(const Scenario& scenario, const Part& part, Paralle
   setup.resolution = scenario.resolution;
   setup.cycle = scenario.cycle;
   setup.seed = static_cast<std::uint64_t>(scenario.seed);
-  setup.evaluate = MakeEvaluator({parallelism, scenario.evaluator});
+  setup.evaluate = MakeEvaluator(
+      {parallelism, scenario.evaluator, MakeGripperGeometry(Hc10(), ScenarioLayout(scenario))});
   setup.parallelism = parallelism;
   return setup;
 }
@@ -170,6 +171,7 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
     scenario.perception.profile = "leao2020";
     PlannerConfig& planner = scenario.planner;
     planner.classes = "occluded_joints";
+    planner.motions = {"up", "escape"};  // The paper's own candidates.
     planner.escape_const_m = 0.03;
     planner.samples = 1;
     planner.separated = 0;

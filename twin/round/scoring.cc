@@ -128,7 +128,7 @@ Json RoundScorer::AttemptRow(const AttemptReport& report, int round) {
   row["detection"] = DetectionJson(report.detection);
   row["resolution"] =
       Json{{"used", report.resolution_used},
-           {"strategy", report.resolution_used ? Json(ToString(report.strategy)) : Json(nullptr)},
+           {"strategy", report.resolution_used ? Json(report.strategy) : Json(nullptr)},
            {"outcome", report.resolution_outcome ? Json(ToString(*report.resolution_outcome))
                                                  : Json(nullptr)}};
   row["nudges"] = NudgesJson(report.nudges);

@@ -1,0 +1,127 @@
+#include <algorithm>
+
+#include "planner/cycle/round_steps.h"
+#include "planner/grasp/placement.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kRetreat_m = 0.15;
+constexpr double kPlaceGap_m = 0.003;      ///< E stops this far above touching the tray.
+constexpr double kAbovePlace_m = 0.20;     ///< Last weighing: above all that lies on the tray.
+constexpr double kGuardedPlace_m = 0.035;  ///< From here on what lies on the tray may be met.
+constexpr double kWeighAbove_s = 0.3;
+
+constexpr double kTruthDelay_s = 2.0;  ///< A hose that lay on others rocks before it rests.
+constexpr int kMaxSlotsTried = 6;
+
+enum PlaceStage { kCarryStage, kLowerStage, kReleaseStage, kRetreatStage };
+
+RigidTransform Over(RigidTransform X_BE, double height_m) {
+  X_BE.translation().z() += height_m;
+  return X_BE;
+}
+
+/// Carrying to over the slot, down onto the tray, letting go and up.
+PickPath MakePlacePath(const CycleContext& c, const PlacementPose& pose) {
+  const CycleConfig& config = c.setup.cycle;
+  PathBuilder path = c.Path();
+  path.Transfer("carrying", Over(pose.X_BE, kAbovePlace_m));
+  path.NextStage();
+  path.Line("laying down", To(Over(pose.X_BE, kGuardedPlace_m)));
+  // Another tube may lie where this one comes to rest: what is felt ends the descent.
+  path.GuardedLine("onto the tray", To(Over(pose.X_BE, kPlaceGap_m - pose.raised_m)),
+                   2.0 * config.guarded_speed_m_s, 0.5 * config.guard_force_N);
+  path.NextStage();
+  path.Open("letting go", c.ReleaseOpening());
+  path.NextStage();
+  path.Line("up", By(Vector3(0, 0, kRetreat_m)));
+  return path.path();
+}
+
+struct Placement {
+  PlacementPose pose;
+  CheckedPath path;
+};
+
+/// The best slot with a path that the arm can run, or why there is none.
+std::variant<Placement, StepOutcome> PlanPlace(const CycleContext& c, const Polyline& line_E) {
+  const MotionPlanner& planner = c.executor.planner();
+  const double q6_rad = c.executor.Start().q[5];
+  std::vector<RigidTransform> refused;
+  std::string reason = "no slot of the tray is in reach";
+  while (static_cast<int>(refused.size()) < kMaxSlotsTried) {
+    const auto reachable = [&](const RigidTransform& X_BE) {
+      const bool tried = std::any_of(refused.begin(), refused.end(),
+                                     [&](const auto& other) { return X_BE.isApprox(other, 1e-9); });
+      return !tried && planner.Reach(X_BE, q6_rad) &&
+             planner.Reach(Over(X_BE, kAbovePlace_m), q6_rad);
+    };
+    const std::optional<PlacementPose> pose =
+        PlanPlacement(c.cell.layout, Sagged(line_E, c.setup.part), c.setup.part.radius_m,
+                      c.placed_T, ToolYaw(c.executor.X_BE().linear()), reachable);
+    if (!pose) break;
+    PathCheck check = c.executor.Check(MakePlacePath(c, *pose));
+    const MotionRejection* refusal = RefusalOf(check);
+    if (refusal == nullptr) return Placement{*pose, std::get<CheckedPath>(std::move(check))};
+    reason = refusal->reason;
+    refused.push_back(pose->X_BE);
+  }
+  return StepOutcome::Refused(reason);
+}
+
+/// To over the slot with an eye on the gripper, and the last weighing. Whether the tube is still
+/// there.
+HeldStep Carry(CycleContext& c, const Placement& placement) {
+  c.observer.OnStep("carrying to slot " + std::to_string(placement.pose.slot + 1));
+  c.cell.carrying = true;
+  const StepOutcome carried = c.Run(placement.path, kCarryStage);
+  if (carried.device == WaitOutcome::Status::kObjectLost) {
+    c.cell.carrying = false;
+    c.executor.Resync();
+    c.report.reason = carried.reason;
+    const Weighing weighing = Weigh(c, kWeighAbove_s);
+    if (!weighing.step.ok()) return {weighing.step, HeldOutcome::kNone};
+    if (weighing.detection.outcome == HeldOutcome::kNone) return {{}, HeldOutcome::kNone};
+    // Opening on the word of one of the two could drop a tube.
+    return {{StepOutcome::Status::kTrouble, WaitOutcome::Status::kRejected,
+             carried.reason + ", but the wrist still weighs one"},
+            HeldOutcome::kOne};
+  }
+  if (!carried.ok()) return {carried, HeldOutcome::kOne};
+  const Weighing weighing = Weigh(c, kWeighAbove_s);
+  if (!weighing.step.ok()) return {weighing.step, HeldOutcome::kOne};
+  if (weighing.detection.outcome == HeldOutcome::kNone) {
+    c.report.reason = "nothing hangs in the fingers over the tray";
+  }
+  return {{}, weighing.detection.outcome};
+}
+
+}  // namespace
+
+PlaceStep Place(CycleContext& c, const Polyline& line_E) {
+  const auto planned = PlanPlace(c, line_E);
+  if (const auto* refused = std::get_if<StepOutcome>(&planned)) return {*refused};
+  const Placement& placement = std::get<Placement>(planned);
+  const HeldStep carried = Carry(c, placement);
+  if (!carried.step.ok()) return {carried.step};
+  if (carried.held == HeldOutcome::kNone) return {{}, AttemptOutcome::kDropped};
+  c.observer.OnStep("laying down");
+  if (StepOutcome lowered = c.Run(placement.path, kLowerStage); !lowered.ok()) return {lowered};
+  c.cell.carrying = false;
+  StepOutcome released = c.Run(placement.path, kReleaseStage);
+  if (!released.ok()) return {released};
+  c.Released();
+  c.placed_T.push_back(placement.pose.line_T);
+  c.report.slot_centre_T = placement.pose.slot_centre_T;
+  const TimeNs at = c.cell.clock.Now();
+  StepOutcome up = c.Run(placement.path, kRetreatStage);
+  // Every way to the next place begins by going up: a refusal costs nothing.
+  if (!up.ok() && !up.refused()) return {up};
+  const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
+  const double since_s = Seconds(c.cell.clock.Now() - at);
+  if (since_s < kTruthDelay_s) Wait(c.cell, kTruthDelay_s - since_s);
+  return {{}, AttemptOutcome::kPlaced};
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,111 @@
+#include <cmath>
+
+#include "planner/cycle/round_steps.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr double kRetreatSpeed_m_s = 0.1, kRetreatAcceleration_m_s2 = 0.5;
+constexpr double kRetreat_m = 0.15;
+constexpr double kOverRim_m = 0.10;    ///< Down to here what hangs cannot touch the pile.
+constexpr double kOverFloor_m = 0.05;  ///< The lowest that the fingers go to let something go.
+constexpr double kLowerSpeed_m_s = 0.05;
+constexpr double kRest_s = 0.5;
+
+/// Faults that a person at the cell can look into. After a lost link nobody knows where the arm is.
+bool MayBeAcknowledged(WaitOutcome::Status status) {
+  return status == WaitOutcome::Status::kProtectiveStop ||
+         status == WaitOutcome::Status::kEmergencyStop || status == WaitOutcome::Status::kFault;
+}
+
+RigidTransform AtHeight(RigidTransform X_BE, double z_m) {
+  X_BE.translation().z() = z_m;
+  return X_BE;
+}
+
+bool IsOverBin(const Bin& bin, const RigidTransform& X_BE) {
+  const Vector3 p_NE = bin.X_BN.inverse() * X_BE.translation();
+  return std::abs(p_NE.x()) < bin.half_x_m() && std::abs(p_NE.y()) < bin.half_y_m();
+}
+
+/// Down into the bin where the arm is, or over its middle first.
+PickPath LoweringPath(const CycleContext& c, bool over_middle) {
+  const Bin& bin = c.cell.bin;
+  const double floor_B = bin.X_BN.translation().z();
+  RigidTransform X_BE = c.executor.X_BE();
+  PathBuilder path = c.Path();
+  if (over_middle) {
+    X_BE.translation().head<2>() = bin.X_BN.translation().head<2>();
+    X_BE = AtHeight(X_BE, floor_B + c.cell.layout.carry_height_m);
+    path.Transfer("to over the bin's middle", X_BE);
+  }
+  const double rim_B = floor_B + bin.wall_m() + kOverRim_m, low_B = floor_B + kOverFloor_m;
+  if (rim_B < X_BE.translation().z()) {
+    path.Line("lowering", To(AtHeight(X_BE, rim_B)), c.setup.planner.lift_speed_m_s);
+  }
+  if (low_B < X_BE.translation().z()) {
+    // Hanging tubes touch first: what is felt as the load going down ends the descent.
+    path.GuardedLine("into the bin", To(AtHeight(X_BE, low_B)), kLowerSpeed_m_s,
+                     c.setup.cycle.guard_force_N);
+  }
+  return path.path();
+}
+
+StepOutcome RetreatAndPutBack(CycleContext& c) {
+  c.executor.Resync();
+  const double carry_B = c.cell.bin.X_BN.translation().z() + c.cell.layout.carry_height_m;
+  const RigidTransform X_BE = c.executor.X_BE();
+  MotionOptions slow = NearGrasp(kRetreatSpeed_m_s, kRetreatAcceleration_m_s2);
+  if (X_BE.translation().z() < carry_B) {
+    PathBuilder up = c.Path();
+    up.Add("up after a stop", slow, Follow{{To(AtHeight(X_BE, carry_B))}});
+    if (StepOutcome step = c.CheckAndRun(up.path()); !step.ok()) return step;
+  }
+  const GripperState& fingers = c.executor.fingers();
+  const bool closed = fingers.object == GripperObject::kContactClosing;
+  if (!closed || fingers.opening_m < kNothingOpening_m) return {};
+  RigidTransform over = c.executor.X_BE();
+  over.translation().head<2>() = c.cell.bin.X_BN.translation().head<2>();
+  PathBuilder back = c.Path();
+  back.Add("over the bin after a stop", slow, Transfer{over});
+  if (StepOutcome step = c.CheckAndRun(back.path()); !step.ok()) return step;
+  return PutBack(c);
+}
+
+/// Opens, rests and goes up.
+StepOutcome LetGo(CycleContext& c, double opening_m, double rest_s) {
+  PathBuilder open = c.Path();
+  open.Open("letting go", opening_m);
+  if (rest_s > 0.0) open.Pause("rest", rest_s);
+  c.cell.carrying = false;
+  if (StepOutcome step = c.CheckAndRun(open.path()); !step.ok()) return step;
+  c.Released();
+  PathBuilder up = c.Path();
+  up.Line("up", By(Vector3(0, 0, kRetreat_m)));
+  const StepOutcome step = c.CheckAndRun(up.path());
+  return step.refused() ? StepOutcome() : step;
+}
+
+}  // namespace
+
+StepOutcome OpenAndRetreat(CycleContext& c, double opening_m) { return LetGo(c, opening_m, 0.0); }
+
+StepOutcome PutBack(CycleContext& c) {
+  c.observer.OnStep("putting back");
+  const bool over_middle = !IsOverBin(c.cell.bin, c.executor.X_BE());
+  StepOutcome lowered = c.CheckAndRun(LoweringPath(c, over_middle));
+  if (lowered.refused() && !over_middle) lowered = c.CheckAndRun(LoweringPath(c, true));
+  if (!lowered.ok()) return lowered;
+  return LetGo(c, c.ReleaseOpening(), kRest_s);
+}
+
+Acknowledgement GoOnAfterStop(CycleContext& c, const StepOutcome& trouble) {
+  c.cell.carrying = false;
+  if (!c.setup.acknowledge || !MayBeAcknowledged(trouble.device)) return Acknowledgement::kEnd;
+  if (c.setup.acknowledge(trouble.reason) != Acknowledgement::kGoOn) return Acknowledgement::kEnd;
+  c.observer.OnStep("going on after a stop");
+  if (RecoverArm(c.cell).status != WaitOutcome::Status::kDone) return Acknowledgement::kEnd;
+  return RetreatAndPutBack(c).ok() ? Acknowledgement::kGoOn : Acknowledgement::kEnd;
+}
+
+}  // namespace tubetwin

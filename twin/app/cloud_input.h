@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "models/base/cloud/cloud.h"
+#include "models/bin.h"
+#include "twin/app/common.h"
+
+namespace CLI {
+class Option;
+}
+
+namespace tubetwin {
+
+/// Clouds from files and what must be known about them.
+struct CloudInput {
+  std::vector<std::string> clouds;
+  std::string part, bin, profile, pose;
+};
+
+/// Adds --part, --bin, --profile and --pose to a verb; returns --part.
+CLI::Option* AddCloudOptions(CLI::App& verb, CloudInput& input);
+
+/// The clouds as the pipeline gets them: each with a pose, none with labels. Throws Error(kBadData)
+/// for files without a pose where none is given, or with hardly a point.
+std::vector<OrganizedCloud> ReadViews(const CloudInput& input, const Bin& bin,
+                                      const Common& common);
+
+}  // namespace tubetwin

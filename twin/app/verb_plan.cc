@@ -1,0 +1,136 @@
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "perception/perceive.h"
+#include "planner/evaluator/evaluator.h"
+#include "planner/pick/make_path.h"
+#include "planner/pick/nudge.h"
+#include "planner/pick/pick_planner.h"
+#include "planner/pick/runnable_plan.h"
+#include "planner/scene_query/voxel_downsample.h"
+#include "twin/app/cloud_input.h"
+#include "twin/app/common.h"
+
+namespace tubetwin {
+namespace {
+
+/// What is planned in: perceived tubes, and the points of the clouds where these are given.
+struct Seen {
+  TubeScene scene;
+  Part part;
+  Bin bin;
+  std::vector<Vector3> points_N;
+};
+
+Seen ReadScene(const CloudInput& input, const Scenario& scenario) {
+  const std::string& file = input.clouds.front();
+  const Json json = ReadJsonFile(file);
+  const JsonView document(json, file);
+  Seen seen{TubeSceneFromJson(document), {}, {}, {}};
+  if (!input.part.empty()) {
+    seen.part = LoadPart(input.part);
+  } else if (const auto named = document.Optional("part")) {
+    seen.part = PartFromJson(*named);
+  } else {
+    throw Error(ErrorKind::kUsage, file + ": names no part; give --part");
+  }
+  const auto bin = document.Optional("bin");
+  seen.bin = bin ? BinFromJson(*bin) : ScenarioBin(scenario, Bin().size_m, ".");
+  if (!input.bin.empty()) seen.bin.size_m = ParseBinSize(input.bin);
+  return seen;
+}
+
+Seen PerceiveScene(const CloudInput& input, const Scenario& scenario, const Common& common) {
+  if (input.part.empty()) throw Error(ErrorKind::kUsage, "plan of clouds: --part is needed");
+  Seen seen{{}, LoadPart(input.part), ScenarioBin(scenario, Bin().size_m, "."), {}};
+  if (!input.bin.empty()) seen.bin.size_m = ParseBinSize(input.bin);
+  const std::vector<OrganizedCloud> views = ReadViews(input, seen.bin, common);
+  seen.scene = Perceive(views, seen.part, seen.bin, scenario.perception, common.parallelism());
+  seen.points_N = VoxelDownsample(views, seen.bin);
+  return seen;
+}
+
+/// Where the arm stands when the cycle plans: at the last view, the fingers open.
+PathStart AfterLooking(const MotionPlanner& planner, const Scenario& scenario, const Bin& bin) {
+  PathStart start;
+  const RigidTransform X_BE = planner.PoseOfEForScan(ScanPoses(scenario.scan, bin).back());
+  if (const auto q = planner.Reach(X_BE)) start.q = *q;
+  return start;
+}
+
+void Report(const PlanResult& result, const std::optional<RunnablePlan>& chosen,
+            const std::optional<Nudge>& nudge) {
+  if (nudge) {
+    std::printf("no plan; tube %d would be nudged by %.0f mm; %zu rejections\n", nudge->tube,
+                1e3 * nudge->travel_m, result.rejections.size());
+  } else if (!chosen) {
+    std::printf("no plan; %zu rejections\n", result.rejections.size());
+  } else {
+    const PickPlan& best = result.plans[chosen->index];
+    std::printf("%zu plans; best: tube %d (%s) by %s, cost %.3f%s\n", result.plans.size(),
+                best.target, ToString(best.target_class), best.motion.name.c_str(), best.cost,
+                best.used_simulator ? ", simulated" : "");
+  }
+}
+
+int Plan(const CloudInput& input, const Common& common) {
+  const Scenario scenario = LoadScenario({}, common, input.profile);
+  const bool one_scene = input.clouds.size() == 1 && input.clouds.front().ends_with(".json");
+  const Seen seen = one_scene ? ReadScene(input, scenario) : PerceiveScene(input, scenario, common);
+  const CellLayout layout = ScenarioLayout(scenario);
+  const ArmModel& arm = Hc10();
+  const GripperGeometry gripper = MakeGripperGeometry(arm, layout);
+  const MotionPlanner planner(arm, layout, seen.bin);
+  const PickProblem problem{seen.scene,
+                            seen.points_N,
+                            seen.part,
+                            seen.bin,
+                            gripper,
+                            scenario.planner,
+                            ExtractionMotionsOf(scenario.planner)};
+  const FeasibilityFunction feasible =
+      PathFeasibility(planner, seen.bin, scenario.cycle, seen.part.radius_m);
+  PlanResult result =
+      PlanPicks(problem, MakeEvaluator({common.parallelism(), scenario.evaluator, gripper}),
+                feasible, static_cast<std::uint64_t>(scenario.seed));
+  const auto chosen = FirstRunnable(problem, result.plans, planner, scenario.cycle,
+                                    AfterLooking(planner, scenario, seen.bin), result.rejections);
+  NudgeResult nudge;
+  if (!chosen && scenario.planner.nudges > 0) {
+    nudge = PlanNudge(problem, feasible,
+                      NudgePathFeasibility(planner, seen.bin, scenario.cycle, scenario.planner));
+    result.rejections.insert(result.rejections.end(), nudge.rejections.begin(),
+                             nudge.rejections.end());
+  }
+  Json out = ToJson(result);
+  out["chosen"] = chosen ? Json(chosen->index) : Json(nullptr);
+  out["nudge"] = ToJson(nudge.nudge);
+  WriteJsonFile(out, common.out);
+  Report(result, chosen, nudge.nudge);
+  return 0;
+}
+
+}  // namespace
+
+void AddPlanVerb(CLI::App& app, Common& common) {
+  auto input = std::make_shared<CloudInput>();
+  CLI::App* verb = app.add_subcommand(
+      "plan",
+      "Example: tubetwin plan tubes.json --out plan.json\n\n"
+      "What the pick cycle would do next: candidate motions, grasps, ranking, the chosen plan, and "
+      "the reasons for rejections. From perceived tubes, or from clouds, whose points grasps then "
+      "keep clear of.");
+  verb->add_option("input", input->clouds, "tubes.json, or PCD or PLY files, one per view")
+      ->required();
+  AddCloudOptions(*verb, *input)
+      ->description("Part name or part file; default: what tubes.json names");
+  AddCommonOptions(*verb, common, "plan.json to write", true);
+  verb->callback(
+      [input, &common] { common.action = [input, &common] { return Plan(*input, common); }; });
+}
+
+}  // namespace tubetwin
