@@ -37,7 +37,7 @@ const std::map<std::string, std::vector<std::string>>& Rooms() {
       {"twin/cell", {"twin/render", "scenes", "hw_bridge/cell"}},
       {"twin/campaign",
        {"twin/cell", "twin/render", "planner/evaluator", "planner/cycle", "perception", "scenes",
-        "hw_bridge/recording"}},
+        "hw_bridge/recording", "hw_bridge/drivers"}},
       {"twin/live", {"twin/campaign", "hw_bridge/drivers", "hw_bridge/emulators"}},
       {"twin/app", {"twin/live", "twin/campaign", "hw_bridge/mcap"}},
   };

@@ -88,6 +88,7 @@ class DriverArmRig : public ArmContractRig {
   }
   YaskawaConfig Config() {
     YaskawaConfig config;
+    config.host = "127.0.0.1";
     config.motion_port = emulator_.motion_port();
     config.state_port = emulator_.state_port();
     config.armed = true;

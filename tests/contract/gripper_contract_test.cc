@@ -104,6 +104,7 @@ class DriverGripperRig : public GripperContractRig {
  private:
   RobotiqConfig Config(bool rtu) {
     RobotiqConfig config;
+    config.host = "127.0.0.1";
     config.transport = rtu ? "rtu" : "tcp";
     if (rtu) config.device = served_.emulator().device();
     if (!rtu) config.port = served_.emulator().port();

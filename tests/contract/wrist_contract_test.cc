@@ -84,6 +84,7 @@ class DriverWristRig : public WristContractRig {
  private:
   NetftConfig Config() {
     NetftConfig config;
+    config.host = "127.0.0.1";
     config.port = served_.emulator().port();
     config.http_port = served_.emulator().http_port();
     return config;

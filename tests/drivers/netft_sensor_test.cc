@@ -14,6 +14,7 @@ using Catch::Matchers::Contains;
 
 NetftConfig To(ServedWrist& served) {
   NetftConfig config;
+  config.host = "127.0.0.1";
   config.port = served.port();
   config.http_port = served.http_port();
   config.rate = kServedRate;
@@ -147,6 +148,7 @@ TEST_CASE("The driver stops the stream that it has started", "[unit]") {
 TEST_CASE("A box that cannot be reached is named with its place", "[unit]") {
   const RunningClock clock(1000.0);
   NetftConfig config;
+  config.host = "127.0.0.1";
   config.rate = 1000.0;
   const auto why = [&]() -> std::string {
     try {

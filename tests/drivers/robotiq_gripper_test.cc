@@ -15,6 +15,7 @@ using Catch::Matchers::Contains;
 
 RobotiqConfig To(ServedGripper& served) {
   RobotiqConfig config;
+  config.host = "127.0.0.1";
   config.port = served.port();
   config.rate = kServedRate;
   return config;
@@ -23,6 +24,7 @@ RobotiqConfig To(ServedGripper& served) {
 /// Driver and emulated gripper; `rtu` by a pseudo-terminal.
 struct Bench {
   explicit Bench(bool rtu = false) : served(rtu ? folder / "gripper" : "") {
+    config.host = "127.0.0.1";
     if (!rtu) config.port = served.port();
     if (rtu) config.transport = "rtu";
     if (rtu) config.device = folder / "gripper";
@@ -173,6 +175,7 @@ TEST_CASE("A closed connection is lost at once", "[unit]") {
 
 TEST_CASE("A gripper that cannot be reached is named with its place", "[unit]") {
   RobotiqConfig config;
+  config.host = "127.0.0.1";
   {
     ServedGripper gone;
     config.port = gone.port();

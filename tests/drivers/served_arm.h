@@ -18,8 +18,8 @@ class PacedThread {
  public:
   PacedThread(double rate, std::mutex& mutex, std::function<void(TimeNs now)> period)
       : thread_([rate, &mutex, period = std::move(period)](const std::stop_token& stop) {
-          constexpr TimeNs kMostLag = std::chrono::milliseconds(20);
-          Pace pace(rate, kMostLag);
+          constexpr TimeNs kMaxLag = std::chrono::milliseconds(20);
+          Pace pace(rate, kMaxLag);
           for (TimeNs now{0}; !stop.stop_requested();) {
             const TimeNs due = pace.Due(now);
             for (; now < due && !stop.stop_requested(); now += kControlPeriod) {
@@ -59,6 +59,7 @@ class ServedArm {
 
   YaskawaConfig Config(bool armed = true) {
     YaskawaConfig config;
+    config.host = "127.0.0.1";
     config.motion_port = emulator_.motion_port();
     config.state_port = emulator_.state_port();
     config.io_port = emulator_.io_port();

@@ -4,12 +4,16 @@
 #include <optional>
 #include <thread>
 
-#include "hw_bridge/drivers/photoneo/scanner_link.h"
+#include "hw_bridge/drivers/ati/netft_driver.h"
+#include "hw_bridge/drivers/photoneo/photoneo_driver.h"
+#include "hw_bridge/drivers/robotiq/robotiq_driver.h"
+#include "hw_bridge/drivers/yaskawa/yaskawa_driver.h"
 #include "hw_bridge/emulators/photoneo/scanner_gige_emulator.h"
 #include "models/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/live/fault_script.h"
+#include "twin/live/live_cell.h"
 #include "twin/round/twin_setup.h"
 
 namespace tubetwin {
@@ -85,10 +89,12 @@ TEST_CASE("A cell file arms the arm of a loopback address only, and names every 
     Bench bench;
     const Scenario reaching = bench.cell->Reaching();
     CHECK(reaching.cell.arm.armed);
-    CHECK(reaching.cell.arm.host == "127.0.0.1");
-    CHECK(reaching.cell.arm.motion_port == bench.cell->arm().motion_port());
-    CHECK(reaching.cell.gripper.port == bench.cell->gripper().port());
-    CHECK(reaching.cell.wrist.port == bench.cell->wrist().port());
+    CHECK(reaching.cell.arm.drivers.Get<YaskawaDriver>().config.host == "127.0.0.1");
+    CHECK(reaching.cell.arm.drivers.Get<YaskawaDriver>().config.motion_port ==
+          bench.cell->arm().motion_port());
+    CHECK(reaching.cell.gripper.drivers.Get<RobotiqDriver>().config.port ==
+          bench.cell->gripper().port());
+    CHECK(reaching.cell.wrist.drivers.Get<NetftDriver>().config.port == bench.cell->wrist().port());
     CHECK_FALSE(reaching.cell.HasTwin());
   }
   Bench bench("0.0.0.0");
@@ -98,7 +104,8 @@ TEST_CASE("A cell file arms the arm of a loopback address only, and names every 
 TEST_CASE("GigE Vision is served when it is asked for, and not otherwise", "[unit]") {
   Bench folder;
   CHECK(folder.cell->Reaching().cell.scanner.driver == "folder");
-  CHECK_FALSE(folder.cell->Reaching().cell.scanner.path.empty());
+  CHECK_FALSE(
+      folder.cell->Reaching().cell.scanner.drivers.Get<PhotoneoDriver>().config.path.empty());
   {  // Whoever can have the port sees that nobody else has it.
     const ScannerGigeEmulator other(folder.twin->cell().scanner, {});
     try {
@@ -110,16 +117,16 @@ TEST_CASE("GigE Vision is served when it is asked for, and not otherwise", "[uni
     }
   }
   Bench bench("127.0.0.1", true);
-  const CellConfig::Scanner chosen = bench.cell->Reaching().cell.scanner;
+  CellConfig::Scanner chosen = bench.cell->Reaching().cell.scanner;
   CHECK(chosen.driver == "gige");
-  CHECK(chosen.host == "127.0.0.1");
-  CHECK(chosen.path.empty());
+  CHECK(chosen.drivers.Get<PhotoneoDriver>().config.host == "127.0.0.1");
+  CHECK(chosen.drivers.Get<PhotoneoDriver>().config.path.empty());
   CHECK_NOTHROW(bench.cell->Reaching().cell.ValidateOrThrow());
-  ScannerLinkConfig link;
-  link.driver = chosen.driver;
-  link.host = chosen.host;
-  link.timeout_s = 25.0;
-  const auto driver = ConnectScanner(link, [] { return RigidTransform::Identity(); });
+  chosen.drivers.Get<PhotoneoDriver>().config.timeout_s = 25.0;
+  DriverContext context =
+      ScenarioContext(bench.scenario, Hc10(), bench.twin->cell().clock, CellPurpose::kLook, "");
+  context.believed_X_NS = [] { return RigidTransform::Identity(); };
+  const auto driver = chosen.Connect(context);
   REQUIRE(driver->Trigger().accepted());
   for (int i = 0; i < 20000 && driver->Status() == ScanStatus::kBusy; ++i) {
     bench.cell->Step();

@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <fstream>
-#include <functional>
 
 #include <CLI/CLI.hpp>
 
@@ -42,13 +41,14 @@ std::vector<Finding> Examine() {
   return out;
 }
 
-Finding Look(const std::string& what, const std::string& driver, const char* fix,
-             const std::function<std::string()>& read) {
-  if (driver == "twin" || driver == "replay") return {what, driver, ""};
+/// Connects to the device of a role; `read` says what it tells.
+template <class Role, class Read>
+Finding Look(const std::string& what, const Role& role, const DriverContext& context, Read read) {
+  if (!role.IsDevice()) return {what, role.driver, ""};
   try {
-    return {what, driver + ": " + read(), ""};
+    return {what, role.driver + ": " + read(*role.Connect(context)), ""};
   } catch (const Error& e) {
-    return {what, e.what(), fix};
+    return {what, e.what(), role.Link().fix};
   }
 }
 
@@ -82,30 +82,19 @@ std::string Said(const WrenchSample& sample) {
 std::vector<Finding> ExamineCell(const Scenario& scenario, const std::string& folder) {
   scenario.cell.ValidateOrThrow();
   const CellConfig& cell = scenario.cell;
-  WallClock clock(scenario.rate);
+  const WallClock clock(scenario.rate);
+  DriverContext context = ScenarioContext(scenario, Hc10(), clock, CellPurpose::kLook, folder);
+  context.believed_X_NS = [] { return RigidTransform::Identity(); };
   std::vector<Finding> out;
-  out.push_back(Look("arm", cell.arm.driver,
-                     "switch the controller on, start its job INIT_ROS, check host and ports in "
-                     "[cell.arm]",
-                     [&] {
-                       const auto arm = ConnectArm(scenario, Hc10(), clock, CellPurpose::kLook);
-                       return Said(arm->State()) +
-                              (cell.arm.armed ? ", armed in the cell file" : "");
-                     }));
-  out.push_back(Look("gripper", cell.gripper.driver, "check power, cable and [cell.gripper]", [&] {
-    return Said(ConnectGripper(scenario, clock, CellPurpose::kLook)->State());
+  out.push_back(Look("arm", cell.arm, context, [&](const Arm& arm) {
+    return Said(arm.State()) + (cell.arm.armed ? ", armed in the cell file" : "");
   }));
-  out.push_back(Look("force/torque sensor", cell.wrist.driver,
-                     "check power, address and [cell.wrist]; counts must be those of its page",
-                     [&] { return Said(ConnectWrist(scenario, clock)->Read()); }));
-  const bool gige = cell.scanner.driver == "gige";
-  const char* const scanner_fix =
-      gige ? "check power, address and [cell.scanner], and that no other program has the scanner"
-           : "make the folder, or mount the share, that [cell.scanner] path names";
-  out.push_back(Look("scanner", cell.scanner.driver, scanner_fix, [&] {
-    ConnectScanner(scenario, folder, [] { return RigidTransform::Identity(); });
-    return std::string(gige ? "it takes orders" : "its folder can be used");
-  }));
+  out.push_back(Look("gripper", cell.gripper, context,
+                     [](const Gripper& gripper) { return Said(gripper.State()); }));
+  out.push_back(Look("force/torque sensor", cell.wrist, context,
+                     [](const ForceTorqueSensor& wrist) { return Said(wrist.Read()); }));
+  out.push_back(Look("scanner", cell.scanner, context,
+                     [&](const Scanner&) { return cell.scanner.Link().reached; }));
   return out;
 }
 

@@ -91,7 +91,7 @@ RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOp
   scenario.cell.ValidateOrThrow();
   options.acknowledge = AskOperator;
   const std::string cell_folder = FolderOf(run.cell.empty() ? run.scenario : run.cell);
-  if (scenario.cell.arm.driver == "replay") {
+  if (scenario.cell.arm.IsReplay()) {
     const std::string path =
         (fs::path(cell_folder) / scenario.cell.recording).lexically_normal().string();
     ReplayCell replay{CellRecording(path)};

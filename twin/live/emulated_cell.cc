@@ -5,6 +5,10 @@
 
 #include <asio.hpp>
 
+#include "hw_bridge/drivers/ati/netft_driver.h"
+#include "hw_bridge/drivers/photoneo/photoneo_driver.h"
+#include "hw_bridge/drivers/robotiq/robotiq_driver.h"
+#include "hw_bridge/drivers/yaskawa/yaskawa_driver.h"
 #include "hw_bridge/emulators/photoneo/scanner_folder_emulator.h"
 #include "hw_bridge/emulators/photoneo/scanner_gige_emulator.h"
 
@@ -13,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ArmEmulatorConfig ArmAt(const CellConfig::Arm& arm, const EmulationPlaces& places) {
+ArmEmulatorConfig ArmAt(const YaskawaConfig& arm, const EmulationPlaces& places) {
   ArmEmulatorConfig config;
   config.listen = places.listen;
   config.motion_port = places.any_ports ? 0 : arm.motion_port;
@@ -24,19 +28,20 @@ ArmEmulatorConfig ArmAt(const CellConfig::Arm& arm, const EmulationPlaces& place
   return config;
 }
 
-GripperEmulatorConfig GripperAt(const CellConfig::Gripper& gripper, const EmulationPlaces& places) {
+GripperEmulatorConfig GripperAt(const CellConfig& cell, const EmulationPlaces& places) {
+  const RobotiqConfig& gripper = cell.gripper.drivers.Get<RobotiqDriver>().config;
   GripperEmulatorConfig config;
   config.listen = places.listen;
   config.port = places.any_ports ? 0 : gripper.port;
   config.slave = gripper.slave;
-  if (gripper.driver == "modbus_rtu") {
+  if (cell.gripper.driver == "modbus_rtu") {
     config.transport = "rtu";
     config.device = (fs::path(places.folder) / "gripper.tty").string();
   }
   return config;
 }
 
-WristEmulatorConfig WristAt(const CellConfig::Wrist& wrist, const EmulationPlaces& places) {
+WristEmulatorConfig WristAt(const NetftConfig& wrist, const EmulationPlaces& places) {
   WristEmulatorConfig config;
   config.listen = places.listen;
   config.port = places.any_ports ? 0 : wrist.port;
@@ -69,9 +74,11 @@ struct EmulatedCell::Impl {
       : twin(of),
         scenario(given),
         places(at),
-        arm(io, twin.servo_arm(), twin.cell().arm_model, ArmAt(given.cell.arm, at)),
-        gripper(io, twin.cell().gripper, GripperAt(given.cell.gripper, at)),
-        wrist(io, twin.cell().wrist, WristAt(given.cell.wrist, at)),
+        arm(io, twin.servo_arm(), twin.cell().arm_model,
+            ArmAt(given.cell.arm.drivers.Get<YaskawaDriver>().config, at)),
+        gripper(io, twin.cell().gripper, GripperAt(given.cell, at)),
+        wrist(io, twin.cell().wrist,
+              WristAt(given.cell.wrist.drivers.Get<NetftDriver>().config, at)),
         scanner(ScannerAt(twin.cell().scanner, given, at)),
         moments(twin.cell().arm_model, twin.cell().layout, twin.cell().bin) {}
 
@@ -142,22 +149,26 @@ Scenario EmulatedCell::Reaching() const {
   const bool loopback = asio::ip::make_address(impl_->places.listen).is_loopback();
   cell.arm.driver = "simple_message";
   cell.arm.armed = loopback;
-  cell.arm.motion_port = impl_->arm.motion_port();
-  cell.arm.state_port = impl_->arm.state_port();
-  cell.arm.io_port = impl_->arm.io_port();
-  cell.arm.hses_port = impl_->arm.hses_port();
+  YaskawaConfig& arm = cell.arm.drivers.Get<YaskawaDriver>().config;
+  arm.motion_port = impl_->arm.motion_port();
+  arm.state_port = impl_->arm.state_port();
+  arm.io_port = impl_->arm.io_port();
+  arm.hses_port = impl_->arm.hses_port();
+  RobotiqConfig& gripper = cell.gripper.drivers.Get<RobotiqDriver>().config;
   if (cell.gripper.driver == "modbus_rtu") {
-    cell.gripper.device = impl_->gripper.device();
+    gripper.device = impl_->gripper.device();
   } else {
     cell.gripper.driver = "modbus_tcp";
-    cell.gripper.port = impl_->gripper.port();
+    gripper.port = impl_->gripper.port();
   }
   cell.wrist.driver = "rdt";
-  cell.wrist.port = impl_->wrist.port();
-  cell.wrist.http_port = impl_->wrist.http_port();
+  NetftConfig& wrist = cell.wrist.drivers.Get<NetftDriver>().config;
+  wrist.port = impl_->wrist.port();
+  wrist.http_port = impl_->wrist.http_port();
   cell.scanner.driver = impl_->places.gige ? "gige" : "folder";
-  cell.scanner.path = impl_->places.gige ? "" : ScanFolder(impl_->places);
-  cell.arm.host = cell.gripper.host = cell.wrist.host = cell.scanner.host = impl_->places.listen;
+  ScannerLinkConfig& scanner = cell.scanner.drivers.Get<PhotoneoDriver>().config;
+  scanner.path = impl_->places.gige ? "" : ScanFolder(impl_->places);
+  arm.host = gripper.host = wrist.host = scanner.host = impl_->places.listen;
   return out;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -16,17 +15,11 @@ enum class CellPurpose {
   kLook,  ///< Nothing moves: the arm gets no byte on its motion port, the gripper stays as it is.
 };
 
-// One device each, by the scenario's [cell.*], whose driver is not "twin" or "replay". They throw
-// Error(kConfig), and Error(kDevice) naming device, place and what was awaited, within 10 s.
-// References must outlive the device; the clock tells Now() to any thread.
-std::unique_ptr<Arm> ConnectArm(const Scenario& scenario, const ArmModel& model,
-                                const CellClock& clock, CellPurpose purpose);
-std::unique_ptr<Gripper> ConnectGripper(const Scenario& scenario, const CellClock& clock,
-                                        CellPurpose purpose);
-std::unique_ptr<ForceTorqueSensor> ConnectWrist(const Scenario& scenario, const CellClock& clock);
-/// `believed_X_NS`: where the scanner is now. `folder`: of relative paths.
-std::unique_ptr<Scanner> ConnectScanner(const Scenario& scenario, const std::string& folder,
-                                        std::function<RigidTransform()> believed_X_NS);
+/// What the drivers of the scenario's cell are connected with. `folder`: of relative paths in the
+/// cell file. For a scanner believed_X_NS is to be filled in. References are kept.
+DriverContext ScenarioContext(const Scenario& scenario, const ArmModel& model,
+                              const CellClock& clock, CellPurpose purpose,
+                              const std::string& folder);
 
 /// Throws Error(kConfig, exit 78) unless the scenario's arm may move: it is the twin's or a
 /// recording's, or armed.
@@ -37,14 +30,15 @@ void RequireArmed(const Scenario& scenario);
 class LiveCell {
  public:
   /// `scenario_folder`, `cell_folder`: of relative names in the scenario and in the cell file.
-  /// Throws as the functions above, RequireArmed (for kRun), ScenarioPile and TwinCell do.
+  /// Throws as the drivers' Connect, RequireArmed (for kRun), ScenarioPile and TwinCell do.
   /// Precondition: no device is "replay".
   LiveCell(const Scenario& scenario, const std::string& scenario_folder,
            const std::string& cell_folder, CellPurpose purpose, Parallelism parallelism);
   ~LiveCell();
   Cell& cell();
-  /// What came over the links so far and what was lost: {gripper: {unanswered, problem}, wrist:
-  /// {samples, lost, late, malformed, faulty}}; devices that are the twin's are missing.
+  /// What came over the links so far and what was lost, as the drivers count it: {gripper:
+  /// {unanswered, problem}, wrist: {samples, lost, ...}}. Devices that are the twin's, or that
+  /// count nothing, are missing.
   Json Links() const;
 
  private:

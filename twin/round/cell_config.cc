@@ -10,8 +10,6 @@
 namespace tubetwin {
 namespace {
 
-constexpr Range kPort = {1, 65535};
-
 std::vector<std::string> MeshUnitChoices() {
   std::vector<std::string> units = MeshUnits();
   units.insert(units.begin(), "");
@@ -24,28 +22,26 @@ std::vector<double> PoseNumbers(const RigidTransform& X_AB) {
   return {p.x(), p.y(), p.z(), q[0], q[1], q[2], q[3]};
 }
 
-std::array<const std::string*, 4> Drivers(const CellConfig& cell) {
-  return {&cell.arm.driver, &cell.gripper.driver, &cell.wrist.driver, &cell.scanner.driver};
-}
-
-int Count(const CellConfig& cell, const char* driver) {
-  int count = 0;
-  for (const std::string* chosen : Drivers(cell)) count += *chosen == driver ? 1 : 0;
-  return count;
+/// Calls `see` with each of the four roles.
+template <class See>
+void ForEachRole(const CellConfig& cell, See see) {
+  see(cell.arm);
+  see(cell.gripper);
+  see(cell.wrist);
+  see(cell.scanner);
 }
 
 }  // namespace
 
+CellConfig::CellConfig(const DeviceDrivers& drivers) {
+  arm.drivers = drivers.arm;
+  gripper.drivers = drivers.gripper;
+  wrist.drivers = drivers.wrist;
+  scanner.drivers = drivers.scanner;
+}
+
 void CellConfig::Arm::Visit(ConfigVisitor& v) {
-  v.Choice("driver", "twin, a Yaskawa controller with MotoROS, or a recording", driver,
-           {"twin", "simple_message", "replay"});
-  v.Field("host", "address of the controller", host);
-  v.Field("motion_port", "TCP, trajectories", motion_port, kPort);
-  v.Field("state_port", "TCP, joints and status", state_port, kPort);
-  v.Field("io_port", "TCP, inputs and outputs", io_port, kPort);
-  v.Field("hses_port", "UDP, high-speed Ethernet server", hses_port, kPort);
-  v.Field("pulses_per_degree", "of the encoders, for the controller's 30-pulse rules",
-          pulses_per_degree, {1, 1e6});
+  CellRole::Visit(v);
   v.Field("armed", "a person's word that this arm may move; without it nothing is sent to it",
           armed);
   v.Field("start_speed_m_s",
@@ -58,31 +54,8 @@ void CellConfig::Arm::Visit(ConfigVisitor& v) {
   v.Choice("visual_units", "unit of the meshes; empty: metres", visual_units, MeshUnitChoices());
 }
 
-void CellConfig::Gripper::Visit(ConfigVisitor& v) {
-  v.Choice("driver", "twin, a Robotiq 2F-85 by serial line or network, or a recording", driver,
-           {"twin", "modbus_rtu", "modbus_tcp", "replay"});
-  v.Field("host", "modbus_tcp: address", host);
-  v.Field("port", "modbus_tcp: port", port, kPort);
-  v.Field("device", "modbus_rtu: serial device", device);
-  v.Field("slave", "Modbus address", slave, {1, 247});
-}
-
-void CellConfig::Wrist::Visit(ConfigVisitor& v) {
-  v.Choice("driver", "twin, an ATI Net F/T box, or a recording", driver, {"twin", "rdt", "replay"});
-  v.Field("host", "address of the box", host);
-  v.Field("port", "UDP, wrenches", port, kPort);
-  v.Field("http_port", "TCP, the box's configuration page", http_port, kPort);
-  v.Field("counts_per_N", "of the box's configuration", counts_per_N, {1, 1e9});
-  v.Field("counts_per_Nm", "of the box's configuration", counts_per_Nm, {1, 1e9});
-}
-
 void CellConfig::Scanner::Visit(ConfigVisitor& v) {
-  v.Choice("driver",
-           "twin, a Photoneo PhoXi by a folder of saved scans or by GigE Vision, or a recording",
-           driver, {"twin", "folder", "gige", "replay"});
-  v.Field("host", "gige: IPv4 address", host);
-  v.Field("path", "folder: where scans are asked for and saved", path);
-  v.Field("timeout_s", "from a trigger to its whole scan", timeout_s, {0.1, 600});
+  CellRole::Visit(v);
   v.Field("hand_eye_error", "error of the scanner's pose against what [physics] draws; 0: none",
           hand_eye_error, {0, 100});
   effects.Visit(v);
@@ -97,11 +70,21 @@ void CellConfig::Visit(ConfigVisitor& v) {
   v.Section("safety", "what stops the arm", safety);
 }
 
-bool CellConfig::IsTwin() const { return Count(*this, "twin") == 4; }
-bool CellConfig::HasTwin() const { return Count(*this, "twin") > 0; }
+bool CellConfig::IsTwin() const {
+  bool all = true;
+  ForEachRole(*this, [&](const auto& role) { all = all && role.IsTwin(); });
+  return all;
+}
+
+bool CellConfig::HasTwin() const {
+  bool any = false;
+  ForEachRole(*this, [&](const auto& role) { any = any || role.IsTwin(); });
+  return any;
+}
 
 void CellConfig::ValidateOrThrow() const {
-  const int replayed = Count(*this, "replay");
+  int replayed = 0;
+  ForEachRole(*this, [&](const auto& role) { replayed += role.IsReplay() ? 1 : 0; });
   if (replayed != 0 && replayed != 4) {
     throw Error(ErrorKind::kConfig,
                 "cell: " + std::to_string(replayed) +
@@ -112,10 +95,9 @@ void CellConfig::ValidateOrThrow() const {
     throw Error(ErrorKind::kConfig,
                 "cell.recording: is empty; the driver 'replay' needs a recording (cell.rec.zst)");
   }
-  if (scanner.driver == "folder" && scanner.path.empty()) {
-    throw Error(ErrorKind::kConfig,
-                "cell.scanner.path: is empty; the driver 'folder' needs the folder of the scans");
-  }
+  ForEachRole(*this, [](const auto& role) {
+    if (role.IsDevice()) role.Chosen().ValidateOrThrow(role.driver);
+  });
 }
 
 CalibrationConfig::CalibrationConfig()

@@ -1,22 +1,55 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "hw_bridge/cell/safety.h"
+#include "hw_bridge/drivers/registry.h"
 #include "models/base/config/config.h"
 #include "models/scanner_effects.h"
 
 namespace tubetwin {
 
+/// Who serves one role of the cell: the twin, a recording, or a device by one of the registered
+/// drivers.
+template <class Device>
+struct CellRole {
+  std::string driver = "twin";  ///< "twin", "replay", or the name of a driver's link.
+  DriverList<Device> drivers;   ///< Those to choose from, each with the values of its keys.
+
+  bool IsTwin() const { return driver == "twin"; }
+  bool IsReplay() const { return driver == "replay"; }
+  /// A device of its own, by a registered driver.
+  bool IsDevice() const { return !IsTwin() && !IsReplay(); }
+  /// Precondition: IsDevice().
+  const DeviceDriver<Device>& Chosen() const { return drivers.Of(driver); }
+  DriverLink Link() const {
+    for (const DriverLink& link : Chosen().Links()) {
+      if (link.name == driver) return link;
+    }
+    return {};
+  }
+  std::unique_ptr<Device> Connect(const DriverContext& context) const {
+    return Chosen().Connect(driver, context);
+  }
+  /// The key `driver`, then the drivers' own keys.
+  void Visit(ConfigVisitor& v) {
+    std::vector<std::string> allowed = drivers.Names();
+    allowed.insert(allowed.begin(), "twin");
+    allowed.push_back("replay");
+    v.Choice("driver", ("twin, " + drivers.Summary() + ", or a recording").c_str(), driver,
+             allowed);
+    drivers.Visit(v);
+  }
+};
+
 /// Which device serves each role of the cell and how it is reached: tables [cell.*]. Keys that a
 /// driver does not need are ignored by it.
 struct CellConfig {
-  struct Arm {
-    std::string driver = "twin";
-    std::string host = "192.168.1.31";  ///< Factory address of the controller.
-    int motion_port = 50240, state_port = 50241, io_port = 50242, hses_port = 10040;
-    double pulses_per_degree = 1000.0;
+  explicit CellConfig(const DeviceDrivers& drivers = BuiltInDrivers());
+
+  struct Arm : CellRole<tubetwin::Arm> {
     bool armed = false;
     double start_speed_m_s = 0.25;  ///< Of a real arm, until its first tube is placed.
     /// Base and links 1 to 6 in their own frames (models/arm/hc10.toml), for pictures; empty
@@ -25,26 +58,9 @@ struct CellConfig {
     std::string visual_units;
     void Visit(ConfigVisitor& v);
   } arm;
-  struct Gripper {
-    std::string driver = "twin";
-    std::string host = "192.168.1.11";
-    int port = 1502;
-    std::string device = "/dev/ttyUSB0";  ///< modbus_rtu.
-    int slave = 9;
-    void Visit(ConfigVisitor& v);
-  } gripper;
-  struct Wrist {
-    std::string driver = "twin";
-    std::string host = "192.168.1.1";  ///< Factory address of the Net F/T box.
-    int port = 49152, http_port = 8049;
-    double counts_per_N = 1e6, counts_per_Nm = 1e6;
-    void Visit(ConfigVisitor& v);
-  } wrist;
-  struct Scanner {
-    std::string driver = "twin";
-    std::string host = "192.168.1.27";
-    std::string path;             ///< folder; relative to the file that names it.
-    double timeout_s = 10.0;      ///< From a trigger to its whole scan, cell time.
+  CellRole<tubetwin::Gripper> gripper;
+  CellRole<ForceTorqueSensor> wrist;
+  struct Scanner : CellRole<tubetwin::Scanner> {
     double hand_eye_error = 1.0;  ///< Of what [physics] draws; 0: none.
     ScannerEffects effects;
     void Visit(ConfigVisitor& v);

@@ -106,7 +106,7 @@ CellLayout ScenarioLayout(const Scenario& scenario) {
 
 SafetyLimits ScenarioSafety(const Scenario& scenario) {
   SafetyLimits safety = scenario.cell.safety.AtRate(scenario.rate);
-  if (scenario.cell.arm.driver == "simple_message") {
+  if (scenario.cell.arm.IsDevice()) {
     safety.start_speed_m_s = scenario.cell.arm.start_speed_m_s;
   }
   return safety;

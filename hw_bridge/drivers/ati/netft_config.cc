@@ -6,12 +6,11 @@
 namespace tubetwin {
 
 void NetftConfig::Visit(ConfigVisitor& v) {
-  v.Field("host", "the Net F/T box's address", host);
-  v.Field("port", "its UDP port of raw data transfer", port, {1, 65535});
-  v.Field("http_port", "its TCP port of the configuration page; 0: the page is not read", http_port,
-          {0, 65535});
-  v.Field("counts_per_N", "counts of a newton", counts_per_N, {1e-3, 1e9});
-  v.Field("counts_per_Nm", "counts of a newton metre", counts_per_Nm, {1e-3, 1e9});
+  v.Field("host", "address of the box", host);
+  v.Field("port", "UDP, wrenches", port, {1, 65535});
+  v.Field("http_port", "TCP, the box's configuration page", http_port, {1, 65535});
+  v.Field("counts_per_N", "of the box's configuration", counts_per_N, {1, 1e9});
+  v.Field("counts_per_Nm", "of the box's configuration", counts_per_Nm, {1, 1e9});
 }
 
 void NetftConfig::ValidateOrThrow() const {

@@ -10,16 +10,15 @@
 namespace tubetwin {
 
 void ScannerLinkConfig::Visit(ConfigVisitor& v) {
-  v.Choice("driver", "how scans are exchanged", driver, {"folder", "gige"});
-  v.Field("host", "gige: the scanner's IPv4 address", host);
-  v.Field("path", "folder: where triggers and scans are exchanged", path);
-  v.Field("timeout_s", "from a trigger to its whole scan, cell time", timeout_s, {0.1, 25.0});
+  v.Field("host", "gige: IPv4 address", host);
+  v.Field("path", "folder: where scans are asked for and saved", path);
+  v.Field("timeout_s", "from a trigger to its whole scan", timeout_s, {0.1, 600});
 }
 
 void ScannerLinkConfig::ValidateOrThrow() const {
   if (driver == "folder" && path.empty()) {
     throw Error(ErrorKind::kConfig,
-                "cell.scanner.path is empty, the driver 'folder' needs the name of a folder");
+                "cell.scanner.path: is empty; the driver 'folder' needs the folder of the scans");
   }
   if (!(rate > 0)) {
     throw Error(ErrorKind::kConfig, "rate is " + Number(rate) + ", allowed are numbers over 0");

@@ -10,10 +10,11 @@ namespace tubetwin {
 
 /// How to reach the scanner: `[cell.scanner]` of a cell file.
 struct ScannerLinkConfig {
-  std::string driver = "folder";   ///< "folder" (FolderScanner) or "gige" (GigeScanner).
-  std::string host = "127.0.0.1";  ///< gige: the scanner's IPv4 address.
-  std::string path;                ///< folder: where triggers and scans are exchanged.
-  double timeout_s = 10.0;         ///< From a trigger to its whole scan, cell time.
+  /// "folder" (FolderScanner) or "gige" (GigeScanner): the cell file's key, not visited here.
+  std::string driver = "folder";
+  std::string host = "192.168.1.27";  ///< gige: the scanner's IPv4 address.
+  std::string path;                   ///< folder: where triggers and scans are exchanged.
+  double timeout_s = 10.0;            ///< From a trigger to its whole scan, cell time.
   /// Cell time per wall time: of the whole cell, so the cell file's own key and not visited here.
   double rate = 1.0;
 

@@ -6,10 +6,10 @@
 namespace tubetwin {
 
 void RobotiqConfig::Visit(ConfigVisitor& v) {
-  v.Field("host", "modbus_tcp: the gripper's address", host);
-  v.Field("port", "modbus_tcp: its TCP port", port, {1, 65535});
-  v.Field("device", "modbus_rtu: serial device, 115200 baud, 8 bits, no parity", device);
-  v.Field("slave", "the gripper's Modbus address", slave, {1, 247});
+  v.Field("host", "modbus_tcp: address", host);
+  v.Field("port", "modbus_tcp: port", port, {1, 65535});
+  v.Field("device", "modbus_rtu: serial device", device);
+  v.Field("slave", "Modbus address", slave, {1, 247});
 }
 
 void RobotiqConfig::ValidateOrThrow() const {

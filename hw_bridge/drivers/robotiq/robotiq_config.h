@@ -8,11 +8,11 @@ namespace tubetwin {
 
 /// How to reach a Robotiq 2F-85: `[cell.gripper]` of a cell file.
 struct RobotiqConfig {
-  std::string transport =
-      "tcp";  ///< "tcp" or "rtu": the cell file's drivers modbus_tcp, modbus_rtu.
-  std::string host = "127.0.0.1";  ///< tcp.
-  int port = 1502;                 ///< tcp.
-  std::string device;              ///< rtu: serial device, 115200 baud 8N1.
+  /// "tcp" or "rtu": the cell file's drivers modbus_tcp, modbus_rtu.
+  std::string transport = "tcp";
+  std::string host = "192.168.1.11";    ///< tcp.
+  int port = 1502;                      ///< tcp.
+  std::string device = "/dev/ttyUSB0";  ///< rtu: serial device, 115200 baud 8N1.
   int slave = 9;
   /// Cell time per wall time: of the whole cell, so the cell file's own key and not visited here.
   double rate = 1.0;

@@ -5,6 +5,17 @@
 
 namespace tubetwin {
 
+void YaskawaConfig::Visit(ConfigVisitor& v) {
+  constexpr Range kPort = {1, 65535};
+  v.Field("host", "address of the controller", host);
+  v.Field("motion_port", "TCP, trajectories", motion_port, kPort);
+  v.Field("state_port", "TCP, joints and status", state_port, kPort);
+  v.Field("io_port", "TCP, inputs and outputs", io_port, kPort);
+  v.Field("hses_port", "UDP, high-speed Ethernet server", hses_port, kPort);
+  v.Field("pulses_per_degree", "of the encoders, for the controller's 30-pulse rules",
+          pulses_per_degree, {1, 1e6});
+}
+
 void YaskawaConfig::ValidateOrThrow() const {
   if (host.empty()) {
     throw Error(ErrorKind::kConfig,

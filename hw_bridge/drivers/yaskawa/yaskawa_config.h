@@ -2,21 +2,26 @@
 
 #include <string>
 
+#include "models/base/config/config.h"
+
 namespace tubetwin {
 
 /// How to reach a Yaskawa controller that runs MotoROS 1: `[cell.arm]` of a cell file.
 struct YaskawaConfig {
-  std::string host = "127.0.0.1";
-  int motion_port = 50240;  ///< TCP, simple_message.
+  std::string host = "192.168.1.31";  ///< Factory address of the controller.
+  int motion_port = 50240;            ///< TCP, simple_message.
   int state_port = 50241;
-  /// Not connected: nothing that the arm's interface offers needs it.
-  int io_port = 50242;
+  /// Not connected, for they offer nothing that Arm needs: inputs and outputs (TCP), high-speed
+  /// Ethernet server (UDP).
+  int io_port = 50242, hses_port = 10040;
   double pulses_per_degree = 1000;  ///< Of the coarsest axis: the controller compares starts in it.
-  /// Without it nothing is sent: the motion port is not even connected.
+  /// Without it nothing is sent: the motion port is not even connected. Not visited: the key of the
+  /// same name concerns any arm.
   bool armed = false;
-  /// Cell time per wall time: of the whole cell, so the cell file's own key.
+  /// Cell time per wall time: of the whole cell, so the cell file's own key and not visited here.
   double rate = 1.0;
 
+  void Visit(ConfigVisitor& v);
   /// Throws Error(kConfig) for what the fields' own ranges cannot say.
   void ValidateOrThrow() const;
 };

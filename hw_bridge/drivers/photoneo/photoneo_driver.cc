@@ -1,0 +1,40 @@
+#include "hw_bridge/drivers/photoneo/photoneo_driver.h"
+
+#include <filesystem>
+
+namespace tubetwin {
+
+std::unique_ptr<DeviceDriver<Scanner>> PhotoneoDriver::Clone() const {
+  return std::make_unique<PhotoneoDriver>(*this);
+}
+
+std::vector<DriverLink> PhotoneoDriver::Links() const {
+  return {
+      {"folder", "make the folder, or mount the share, that [cell.scanner] path names",
+       "its folder can be used"},
+      {"gige", "check power, address and [cell.scanner], and that no other program has the scanner",
+       "it takes orders"}};
+}
+
+std::string PhotoneoDriver::Summary() const {
+  return "a Photoneo PhoXi by a folder of saved scans or by GigE Vision";
+}
+
+void PhotoneoDriver::Visit(ConfigVisitor& v) { config.Visit(v); }
+
+void PhotoneoDriver::ValidateOrThrow(const std::string& link) const {
+  ScannerLinkConfig chosen = config;
+  chosen.driver = link;
+  chosen.ValidateOrThrow();
+}
+
+std::unique_ptr<Scanner> PhotoneoDriver::Connect(const std::string& link,
+                                                 const DriverContext& context) const {
+  ScannerLinkConfig used = config;
+  used.driver = link;
+  used.path = (std::filesystem::path(context.folder) / config.path).lexically_normal().string();
+  used.rate = context.rate;
+  return ConnectScanner(used, context.believed_X_NS);
+}
+
+}  // namespace tubetwin

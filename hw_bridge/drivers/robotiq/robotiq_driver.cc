@@ -1,0 +1,41 @@
+#include "hw_bridge/drivers/robotiq/robotiq_driver.h"
+
+#include "hw_bridge/drivers/robotiq/robotiq_gripper.h"
+#include "models/base/json.h"
+
+namespace tubetwin {
+namespace {
+
+constexpr const char* kRtu = "modbus_rtu";
+
+}  // namespace
+
+std::unique_ptr<DeviceDriver<Gripper>> RobotiqDriver::Clone() const {
+  return std::make_unique<RobotiqDriver>(*this);
+}
+
+std::vector<DriverLink> RobotiqDriver::Links() const {
+  const std::string fix = "check power, cable and [cell.gripper]";
+  return {{kRtu, fix, ""}, {"modbus_tcp", fix, ""}};
+}
+
+std::string RobotiqDriver::Summary() const { return "a Robotiq 2F-85 by serial line or network"; }
+
+void RobotiqDriver::Visit(ConfigVisitor& v) { config.Visit(v); }
+
+std::unique_ptr<Gripper> RobotiqDriver::Connect(const std::string& link,
+                                                const DriverContext& context) const {
+  RobotiqConfig used = config;
+  used.transport = link == kRtu ? "rtu" : "tcp";
+  used.rate = context.rate;
+  used.activate = context.may_move;
+  return std::make_unique<RobotiqGripper>(used, context.clock);
+}
+
+void RobotiqDriver::CountLink(const Gripper& device, Json& counts) const {
+  if (const auto* gripper = dynamic_cast<const RobotiqGripper*>(&device)) {
+    counts = Json{{"unanswered", gripper->unanswered()}, {"problem", gripper->LinkProblem()}};
+  }
+}
+
+}  // namespace tubetwin

@@ -1,0 +1,33 @@
+#include "hw_bridge/drivers/yaskawa/yaskawa_driver.h"
+
+#include "hw_bridge/drivers/yaskawa/yaskawa_arm.h"
+
+namespace tubetwin {
+
+std::unique_ptr<DeviceDriver<Arm>> YaskawaDriver::Clone() const {
+  return std::make_unique<YaskawaDriver>(*this);
+}
+
+std::vector<DriverLink> YaskawaDriver::Links() const {
+  return {{"simple_message",
+           "switch the controller on, start its job INIT_ROS, check host and ports in [cell.arm]",
+           ""}};
+}
+
+std::string YaskawaDriver::Summary() const { return "a Yaskawa controller with MotoROS"; }
+
+void YaskawaDriver::Visit(ConfigVisitor& v) { config.Visit(v); }
+
+std::string YaskawaDriver::Address() const {
+  return config.host + ":" + std::to_string(config.motion_port);
+}
+
+std::unique_ptr<Arm> YaskawaDriver::Connect(const std::string&,
+                                            const DriverContext& context) const {
+  YaskawaConfig used = config;
+  used.armed = context.may_move;
+  used.rate = context.rate;
+  return std::make_unique<YaskawaArm>(used, context.arm_model, context.clock);
+}
+
+}  // namespace tubetwin
