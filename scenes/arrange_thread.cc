@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "models/base/error.h"
+#include "models/base/rotation.h"
 #include "scenes/arrange.h"
 
 namespace tubetwin::arrange {
@@ -37,8 +38,7 @@ struct Laid {
   RigidTransform X_NFlat() const {
     // Exact rotation of the plane with these slopes.
     const Vector3 normal = Vector3(-lift.y(), -lift.z(), 1.0).normalized();
-    const Matrix3 tilt =
-        Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), normal).toRotationMatrix();
+    const Matrix3 tilt = RotationBetween(Vector3::UnitZ(), normal).toRotationMatrix();
     return MakeTransform(tilt * RotZ(yaw_rad), Vector3(middle.x(), middle.y(), lift.x()));
   }
 };

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "models/base/error.h"
+#include "models/base/rotation.h"
 #include "scenes/engine/mj_handles.h"
 
 namespace tubetwin {
@@ -46,8 +47,7 @@ std::vector<Matrix3> TwistFreeFrames(const std::vector<Vector3>& tangents) {
   frames[0].col(0) = tangents[0].unitOrthogonal();
   frames[0].col(1) = tangents[0].cross(frames[0].col(0));
   for (std::size_t i = 1; i < tangents.size(); ++i) {
-    const Matrix3 turn =
-        Eigen::Quaterniond::FromTwoVectors(tangents[i - 1], tangents[i]).toRotationMatrix();
+    const Matrix3 turn = RotationBetween(tangents[i - 1], tangents[i]).toRotationMatrix();
     frames[i] = turn * frames[i - 1];
     frames[i].col(2) = tangents[i];
   }

@@ -54,7 +54,7 @@ double Manipulability(const ArmModel& arm, const JointVector& q, const RigidTran
 /// All joint vectors that put the flange at X_BF, up to 16, joint limits ignored except that q3 is
 /// wrapped into its range and all others into (-pi, pi]; sorted lexicographically, no duplicates.
 /// Every one is checked by forward kinematics to 1e-9 m. Empty when out of reach.
-/// Method: degree-8 polynomial in exp(i psi), psi the phase of axis 5 about axis 6 (see arm.cc).
+/// Method: degree-8 polynomial in exp(i psi), psi: phase of axis 5 about 6 (see arm_inverse.cc).
 std::vector<JointVector> InverseAll(const ArmModel& arm, const RigidTransform& X_BF);
 
 /// The solution nearest to `q_near` (largest joint difference, each wrapped where the limits allow)

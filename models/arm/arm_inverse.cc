@@ -20,6 +20,7 @@
 
 #include "models/arm/arm.h"
 #include "models/base/error.h"
+#include "models/base/rotation.h"
 
 namespace tubetwin {
 namespace {
@@ -138,10 +139,17 @@ std::vector<double> RootPhases(const Target& t) {
     companion(n, degree - 1) = -coefficient[low + n] / coefficient[low + degree];
     if (n > 0) companion(n, n - 1) = 1.0;
   }
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> eigen(companion, false);
+  // A companion matrix has Hessenberg form as it is: its eigenvalues are the diagonal of its Schur
+  // form. (ComplexEigenSolver would bring it into that form again, and compile for 8 s.)
+  Eigen::ComplexSchur<Eigen::MatrixXcd> schur(degree);
+  schur.computeFromHessenberg(companion, companion, false);
+  Eigen::VectorXcd roots = schur.matrixT().diagonal();
+  const auto smaller = [](const Complex& a, const Complex& b) { return std::abs(a) < std::abs(b); };
+  for (auto from = roots.begin(); from != roots.end(); ++from) {
+    std::iter_swap(from, std::min_element(from, roots.end(), smaller));
+  }
   std::vector<double> phases;
-  for (int n = 0; n < degree; ++n) {
-    const Complex root = eigen.eigenvalues()[n];
+  for (const Complex& root : roots) {
     if (std::abs(std::abs(root) - 1.0) < kUnitCircleBand) phases.push_back(std::arg(root));
   }
   return phases;
@@ -313,7 +321,7 @@ InverseNearResult InverseWorking(const ArmModel& arm, const RigidTransform& X_BF
   // from there.
   const Vector3 axis_B = X_BF.linear().col(2);
   const Vector3 pole_B = axis_B.z() > 0 ? Vector3::UnitZ() : Vector3(-Vector3::UnitZ());
-  const Eigen::AngleAxisd tilt(Eigen::Quaterniond::FromTwoVectors(pole_B, axis_B));
+  const Eigen::AngleAxisd tilt(RotationBetween(pole_B, axis_B));
   const Vector3 p_BW = (X_BF * arm.X_6F.inverse()).translation();
   const auto pose_at = [&](double share) {
     const Matrix3 R = Eigen::AngleAxisd((share - 1.0) * tilt.angle(), tilt.axis()).matrix();

@@ -138,8 +138,9 @@ void AddGripActuator(mjSpec& spec, double force_N) {
 
 AdvancePolynomial FitTipAdvance(const GripperSpec& spec) {
   constexpr int kSamples = 86;
-  Eigen::Matrix<double, kSamples, 4> A;
-  Eigen::Matrix<double, kSamples, 1> advance;
+  // Sizes known at compile time would be unrolled, for most of a minute of compiling.
+  Eigen::Matrix<double, Eigen::Dynamic, 4> A(kSamples, 4);
+  Eigen::VectorXd advance(kSamples);
   for (int i = 0; i < kSamples; ++i) {
     // The unknowns are scaled by the half stroke; metres to the fourth are tiny.
     const double u = static_cast<double>(i) / (kSamples - 1);
