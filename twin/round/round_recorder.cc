@@ -8,7 +8,7 @@
 #include "models/base/cloud/cloud.h"
 #include "models/base/json.h"
 #include "twin/cell/truth.h"
-#include "twin/render/thinned_points.h"
+#include "twin/render/picture_points.h"
 #include "twin/round/replay_round.h"
 
 namespace tubetwin {
@@ -82,7 +82,7 @@ void TwinRoundRecorder::OnScene(const TubeScene& scene, const PickPlan* plan) {
     if (plan != nullptr && scene.tubes[i].id == plan->target) overlay.target = static_cast<int>(i);
   }
   if (options_.keep != RoundKeep::kRows) {
-    overlay.cloud_N = ThinnedPoints(last_views_, recording_.bin);
+    overlay.cloud_N = DownsampleForPicture(last_views_, recording_.bin);
   }
   recording_.overlays.push_back(std::move(overlay));
 }

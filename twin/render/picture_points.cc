@@ -1,4 +1,4 @@
-#include "twin/render/thinned_points.h"
+#include "twin/render/picture_points.h"
 
 #include <algorithm>
 #include <array>
@@ -20,17 +20,17 @@ bool IsNear(const Vector3& p_NP, const Bin& bin) {
          p_NP.z() < kTop_m;
 }
 
-/// Rows and columns of a view that are stepped over, so that about kLooked points of all views are
-/// looked at: still several for each fine cell.
+/// Every so many rows and columns are read, so that about kRead points of all views are: still
+/// several for each fine cell.
 int StepOf(const std::vector<OrganizedCloud>& views) {
-  constexpr double kLooked = 150'000.0;
+  constexpr double kRead = 150'000.0;
   std::size_t all = 0;
   for (const OrganizedCloud& view : views) all += view.size();
-  return std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(all) / kLooked))));
+  return std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(all) / kRead))));
 }
 
-std::vector<Vector3> Thinned(const std::vector<OrganizedCloud>& views, const Bin& bin,
-                             double scale) {
+std::vector<Vector3> Downsample(const std::vector<OrganizedCloud>& views, const Bin& bin,
+                                double scale) {
   const int step = StepOf(views);
   std::set<std::array<int, 4>> taken;
   std::vector<Vector3> out;
@@ -58,14 +58,14 @@ std::vector<Vector3> Thinned(const std::vector<OrganizedCloud>& views, const Bin
 
 }  // namespace
 
-std::vector<Vector3> ThinnedPoints(const std::vector<OrganizedCloud>& views, const Bin& bin,
-                                   int most) {
-  TT_CHECK(most > 0);
+std::vector<Vector3> DownsampleForPicture(const std::vector<OrganizedCloud>& views, const Bin& bin,
+                                          int max_points) {
+  TT_CHECK(max_points > 0);
   double scale = 1.0;
-  std::vector<Vector3> out = Thinned(views, bin, scale);
-  while (out.size() > static_cast<std::size_t>(most)) {
+  std::vector<Vector3> out = Downsample(views, bin, scale);
+  while (out.size() > static_cast<std::size_t>(max_points)) {
     scale *= 1.4;  // Half the cells of a surface.
-    out = Thinned(views, bin, scale);
+    out = Downsample(views, bin, scale);
   }
   return out;
 }
