@@ -6,17 +6,10 @@
 
 #include "models/arm/arm.h"
 #include "models/base/joint.h"
-#include "models/base/polyline.h"
 #include "models/bin.h"
 #include "models/layout.h"
 
 namespace tubetwin {
-
-/// A capsule-chain obstacle or load, for example a tube in the fingers.
-struct CapsuleChain {
-  Polyline line;  ///< Frame by use.
-  double radius_m = 0.0;
-};
 
 /// Distances of arm, tool, scanner housing, gripper and fingers against bin, tray, base, cell plate
 /// and each other (FCL, primitive shapes). Pairs that the joints hold apart or together
