@@ -41,7 +41,7 @@ std::vector<double> ViewOffsets(double extent_m, double field_m) {
 RigidTransform LookFrom(double x, double y, double z, double wall_x, double wall_m,
                         double floor_z) {
   // A narrower shadow hides no tube: the thinnest, 20 mm, rises out of it.
-  constexpr double kMostShadow_m = 0.022;
+  constexpr double kMaxShadow_m = 0.022;
   // Just enough that the wall is still seen up to kCovered_m, as from the place straight above.
   const double tilt = Radians(10.0);
   constexpr double kInside_m = 0.004;
@@ -52,7 +52,7 @@ RigidTransform LookFrom(double x, double y, double z, double wall_x, double wall
   const Vector3 p_BP = Vector3(x, y, z) + down * p_SP;
   const double rim_z = floor_z + wall_m;
   const double shadow_m = wall_m * (p_BP.x() - wall_x) / (p_BP.z() - rim_z);
-  if (shadow_m < kMostShadow_m) return MakeTransform(down, Vector3(x, y, z));
+  if (shadow_m < kMaxShadow_m) return MakeTransform(down, Vector3(x, y, z));
   const Matrix3 tilted = RotY(-tilt) * down;
   return MakeTransform(tilted, Vector3(wall_x - kInside_m - (tilted * p_SP).x(), y, z));
 }

@@ -32,8 +32,8 @@ struct Surface {
   std::vector<Eigen::Vector3f> rejected_N;
 };
 
-Surface LookAtViews(const std::vector<OrganizedCloud>& clouds, const Part& part, const Bin& bin,
-                    const PerceptionConfig& config, Parallelism parallelism) {
+Surface ExtractSurface(const std::vector<OrganizedCloud>& clouds, const Part& part, const Bin& bin,
+                       const PerceptionConfig& config, Parallelism parallelism) {
   const double pitch_m = std::min(config.block_m, 0.07 * part.radius_m);
   std::vector<ViewRaster> rasters(clouds.size());
   Surface out;
@@ -57,7 +57,7 @@ Surface LookAtViews(const std::vector<OrganizedCloud>& clouds, const Part& part,
   ParallelFor(static_cast<int>(bands.size()), parallelism, [&](int i, int) {
     const auto [k, band] = bands[static_cast<std::size_t>(i)];
     of_band[static_cast<std::size_t>(i)] =
-        LookAtBand(rasters[k], foreground, part.radius_m, band, out.views[k]);
+        ExtractSurfaceBand(rasters[k], foreground, part.radius_m, band, out.views[k]);
   });
   std::size_t points = 0, rejected = 0;
   for (const SurfaceOfView& s : of_band) {
@@ -108,17 +108,19 @@ TubeScene Perceive(const std::vector<OrganizedCloud>& views, const Part& part, c
   }
   StepTimer timer;
   TubeScene scene;
-  const Surface surface = LookAtViews(views, part, bin, config, parallelism);
+  const Surface surface = ExtractSurface(views, part, bin, config, parallelism);
   scene.timing_ms.filter = timer.Lap();
   const AxisSpace axis_space = BuildAxisSpace(surface.points, parallelism);
   scene.timing_ms.segment = timer.Lap();
   const std::vector<Fragment> fragments =
       FindFragments(axis_space, surface.points, part.radius_m, parallelism);
   scene.timing_ms.fit = timer.Lap();
-  const HiddenSpace hidden(surface.views, bin, part.radius_m);
+  const OccludedSpace hidden(surface.views, bin, part.radius_m);
   const std::vector<Bridge> bridges = FindBridges(fragments, hidden, kLongestGap * part.length_m);
-  const std::vector<double> rooms_m = MeasureRooms(fragments, hidden, part.length_m);
-  const std::vector<Chain> chains = JoinFragments(fragments, bridges, rooms_m, part.length_m);
+  const std::vector<double> max_extensions_m =
+      MaxOccludedExtensions(fragments, hidden, part.length_m);
+  const std::vector<Chain> chains =
+      JoinFragments(fragments, bridges, max_extensions_m, part.length_m);
   scene.tubes = AssembleTubes(chains, fragments, bridges, hidden, bin, part.length_m);
   scene.timing_ms.join = timer.Lap();
   AssignClasses(scene, part.radius_m);

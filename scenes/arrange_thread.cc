@@ -20,7 +20,7 @@ constexpr double kShift = 0.1;          // Of a ring's middle, share of the half
 constexpr double kJitter_deg = 12.0;    // Of a tube's place and direction on its ring.
 constexpr double kUsualTilt = 0.3;      // Rise over run that the tightest ring needs.
 constexpr double kGap_m = 0.003;        // Between tubes that cross.
-constexpr double kMostTilt = 0.5;       // Rise over run.
+constexpr double kMaxTilt = 0.5;        // Rise over run.
 constexpr double kTurnRadius_m = 0.15;  // Weighs tilting against lifting.
 constexpr double kSlack_m = 0.0015;     // What a condition may miss; settling lets it apart.
 constexpr double kLayingBin_m = 2.0;
@@ -75,8 +75,8 @@ void PlaceRing(const Order& order, std::vector<Laid>& ring, RandomStream& stream
   const double count = static_cast<double>(ring.size());
   // Neighbours' tangents meet at radius * tan(pi / count); there the rise must be one diameter.
   const double lever = std::tan(kPi / count);
-  const double least_m = (order.part.radius_m + 0.5 * kGap_m) / (kUsualTilt * lever);
-  const double radius_m = least_m * stream.Uniform(1.0, 1.6);
+  const double min_m = (order.part.radius_m + 0.5 * kGap_m) / (kUsualTilt * lever);
+  const double radius_m = min_m * stream.Uniform(1.0, 1.6);
   const double slope = (order.part.radius_m + 0.5 * kGap_m) / (radius_m * lever);
   const double start_rad = stream.Uniform(0.0, 2 * kPi);
   const double sense = stream.Uniform() < 0.5 ? -1.0 : 1.0;
@@ -182,7 +182,7 @@ bool Lift(std::vector<Laid>& tubes, const std::vector<Meeting>& meetings, double
   }
   if (worst_m > kSlack_m) return false;
   return std::all_of(tubes.begin(), tubes.end(),
-                     [](const Laid& tube) { return tube.lift.tail<2>().norm() < kMostTilt; });
+                     [](const Laid& tube) { return tube.lift.tail<2>().norm() < kMaxTilt; });
 }
 
 // The lifted tubes, lowest point at `floor_m`; nothing when exact rotation makes any two
@@ -207,10 +207,11 @@ std::optional<std::vector<PileTube>> Build(const Order& order, const std::vector
 // Sizes of the rings that `count` tubes are laid in, each 3 to 7 (fewer than three: one ring, which
 // cannot close).
 std::vector<int> DrawRings(int count, RandomStream& stream) {
-  const int fewest = (count + 6) / 7;
-  const int most = std::max(fewest, std::min(count / 3, fewest + 1));
+  const int min_rings = (count + 6) / 7;
+  const int max_rings = std::max(min_rings, std::min(count / 3, min_rings + 1));
   const int rings =
-      fewest + static_cast<int>(stream.Index(static_cast<std::uint32_t>(most - fewest + 1)));
+      min_rings +
+      static_cast<int>(stream.Index(static_cast<std::uint32_t>(max_rings - min_rings + 1)));
   std::vector<int> sizes(static_cast<std::size_t>(rings), count / rings);
   for (int i = 0; i < count % rings; ++i) ++sizes[static_cast<std::size_t>(i)];
   return sizes;

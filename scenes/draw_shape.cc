@@ -92,8 +92,8 @@ Polyline DrawCorners(const Part& part, RandomStream& stream) {
   double left_m = part.length_m;
   Pen pen;
   for (int i = 0; i < pieces; ++i) {
-    const double most_m = left_m - shortest_m * (pieces - 1 - i);
-    const double piece_m = i + 1 == pieces ? left_m : stream.Uniform(shortest_m, most_m);
+    const double max_m = left_m - shortest_m * (pieces - 1 - i);
+    const double piece_m = i + 1 == pieces ? left_m : stream.Uniform(shortest_m, max_m);
     pen.Straight(piece_m);
     left_m -= piece_m;
     pen.TurnPlane(stream.Uniform(0.0, 2 * kPi));

@@ -119,10 +119,10 @@ Edge ReadEdge(Lines& lines, const std::map<int, Node>& nodes) {
   lines.Need("an edge");
   const auto fields = lines.Split(" \t", 13, "name n1 n2 order radius cx cy cz qw qx qy qz length");
   Edge edge;
-  const int most = std::numeric_limits<int>::max();
-  edge.from = lines.AsInteger(fields[1], "n1", 0, most);
-  edge.to = lines.AsInteger(fields[2], "n2", 0, most);
-  edge.order = lines.AsInteger(fields[3], "order", 0, most);
+  const int max = std::numeric_limits<int>::max();
+  edge.from = lines.AsInteger(fields[1], "n1", 0, max);
+  edge.to = lines.AsInteger(fields[2], "n2", 0, max);
+  edge.order = lines.AsInteger(fields[3], "order", 0, max);
   for (std::size_t i = 4; i < 13; ++i) lines.AsNumber(fields[i], "edge field");
   for (const int end : {edge.from, edge.to}) {
     if (!nodes.contains(end))

@@ -19,9 +19,9 @@ void GiveWay() {
 }
 
 void KeepTime() {
-  sched_param least{};
-  least.sched_priority = ::sched_get_priority_min(SCHED_RR);
-  ::sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &least);
+  sched_param lowest{};
+  lowest.sched_priority = ::sched_get_priority_min(SCHED_RR);
+  ::sched_setscheduler(0, SCHED_RR | SCHED_RESET_ON_FORK, &lowest);
 }
 
 Parallelism Parallelism::All() {

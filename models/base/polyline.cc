@@ -51,12 +51,12 @@ Polyline Simplified(const Polyline& line, double tolerance_m) {
   while (!open.empty()) {
     const auto [from, to] = open.back();
     open.pop_back();
-    double most = tolerance_m;
+    double max_off_m = tolerance_m;
     std::size_t at = from;
     for (std::size_t i = from + 1; i < to; ++i) {
       const double off = Closest({line[from], line[to]}, line[i]).distance_m;
-      if (off <= most) continue;
-      most = off;
+      if (off <= max_off_m) continue;
+      max_off_m = off;
       at = i;
     }
     if (at == from) continue;

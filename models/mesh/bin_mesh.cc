@@ -12,9 +12,9 @@ namespace {
 constexpr int kSamples = 40'000;
 constexpr double kLevel = 0.99, kUpright = 0.15;  ///< |n.z| of a floor, of a wall (8.6 degrees).
 constexpr double kFlat_m = 0.006;                 ///< Ribs and steps below this are no matter.
-constexpr double kMostLean = 0.0875;              ///< Tangent of 5 degrees.
-constexpr double kLeastFloor = 0.9, kLeastWall = 0.8;
-constexpr double kMostContent = 0.02;  ///< Surface between the walls, as a share of the floor.
+constexpr double kMaxLean = 0.0875;               ///< Tangent of 5 degrees.
+constexpr double kMinFloor = 0.9, kMinWall = 0.8;
+constexpr double kMaxContent = 0.02;  ///< Surface between the walls, as a share of the floor.
 
 std::string Mm(double m) {
   char text[32];
@@ -92,8 +92,8 @@ std::optional<double> FloorHeight(const std::vector<MeshPoint>& points) {
   }
   const std::vector<Window> windows = Windows(up_area > 0.2 * all_area ? up : all, 0.5 * kFlat_m);
   if (windows.empty()) return std::nullopt;
-  const double most = Largest(windows).area;
-  const auto large = [&](const Window& window) { return window.area > 0.6 * most; };
+  const double max_area = Largest(windows).area;
+  const auto large = [&](const Window& window) { return window.area > 0.6 * max_area; };
   const auto first = std::find_if(windows.begin(), windows.end(), large);
   // The best of the windows over one another there.
   Window best = *first;
@@ -129,7 +129,7 @@ Wall FindWall(const std::vector<MeshPoint>& points, const Vector3& direction, do
   // What stands between the walls is judged later: the wall is where most of this surface is.
   std::vector<std::pair<double, double>> where;
   for (const MeshPoint& point : all) where.emplace_back(point.p.dot(direction), point.area);
-  const double width = kFlat_m + 3.0 * kMostLean * height_m;
+  const double width = kFlat_m + 3.0 * kMaxLean * height_m;
   const double low = Largest(Windows(std::move(where), width)).low;
   std::vector<MeshPoint> chosen;
   for (const MeshPoint& point : all) {
@@ -177,11 +177,11 @@ void JudgeWalls(const std::array<Wall, 4>& walls, MeshBin& bin) {
     const Wall& wall = walls[i];
     const double side_m = bin.size_m[i < 2 ? 1 : 0];
     const double share = wall.area_m2 / (side_m * (wall.high_m - wall.low_m));
-    if (!(share >= kLeastWall)) {
+    if (!(share >= kMinWall)) {
       bin.verdict = BinVerdict::kNoWall;
       bin.reason = std::string("its wall at ") + kSides[i] + " covers " + Percent(share) +
                    " of that side; at least 80 % are needed";
-    } else if (wall.lean > kMostLean || wall.spread_m > kFlat_m) {
+    } else if (wall.lean > kMaxLean || wall.spread_m > kFlat_m) {
       bin.verdict = BinVerdict::kNoBox;
       bin.reason = std::string("its wall at ") + kSides[i] + " leans by " +
                    Mm(wall.lean * bin.size_m[2]) + " and is uneven by " + Mm(wall.spread_m) +
@@ -200,11 +200,11 @@ void JudgeInside(const std::vector<MeshPoint>& points_N, double lean_m, MeshBin&
       ShareWithin(points_N, {-x, -y, -0.5 * kFlat_m}, {x, y, 0.5 * kFlat_m}, floor_m2, true);
   const double content = ShareWithin(points_N, {gap - x, gap - y, 2.0 * kFlat_m},
                                      {x - gap, y - gap, z + kFlat_m}, floor_m2, false);
-  if (floor < kLeastFloor) {
+  if (floor < kMinFloor) {
     bin.verdict = BinVerdict::kNoFloor;
     bin.reason = "its floor covers " + Percent(floor) + " of the " + Mm(2 * x) + " x " + Mm(2 * y) +
                  " between the walls; at least 90 % are needed";
-  } else if (content > kMostContent) {
+  } else if (content > kMaxContent) {
     bin.verdict = BinVerdict::kNotEmpty;
     bin.reason = "something stands between its walls or closes it: surface of " + Percent(content) +
                  " of its floor; an open, empty bin is needed";

@@ -29,7 +29,7 @@ namespace Assimp {
 namespace tubetwin {
 namespace {
 
-constexpr std::size_t kMostFaces = 2'000'000;
+constexpr std::size_t kMaxFaces = 2'000'000;
 /// Vertices closer than this share of the box's diagonal are one.
 constexpr double kWeld = 1e-5;
 
@@ -136,8 +136,8 @@ Mesh Gather(const aiScene& scene, const std::string& path) {
                               static_cast<int>(first + face.mIndices[k])});
       }
     }
-    if (mesh.faces.size() > kMostFaces) {
-      Refuse(path, "more than " + std::to_string(kMostFaces) +
+    if (mesh.faces.size() > kMaxFaces) {
+      Refuse(path, "more than " + std::to_string(kMaxFaces) +
                        " triangles; export it with a coarser tolerance");
     }
   }

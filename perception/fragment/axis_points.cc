@@ -17,7 +17,7 @@ constexpr float kGrazing = 0.3f;
 constexpr float kFewest = 8.0f;
 constexpr float kRoughness = 0.035f;
 /// A line of blocks has no normal.
-constexpr float kLeastRoundness = 0.2f;
+constexpr float kMinRoundness = 0.2f;
 constexpr int kLargestHalf = 4;
 
 /// Blocks on either side of the centre, so that the window is about 3.5 mm wide.
@@ -52,7 +52,7 @@ class Rows {
     ++next_;
   }
 
-  BlockRows source_;
+  DepthBlocks source_;
   int half_, next_;
   std::array<BlockRow, 2 * kLargestHalf + 1> ring_;
   std::array<const BlockRow*, 2 * kLargestHalf + 1> around_{};
@@ -91,7 +91,7 @@ class PointMaker {
     const float incidence = away_S.dot(ray_S) / (norm * ray_S.norm());
     // A point's distance from the plane is its error in 1/z over w and the normal's length.
     const float rough = kRoughness * r_ * w * norm;
-    const bool smooth = planes.count[i] >= kFewest && planes.roundness[i] > kLeastRoundness &&
+    const bool smooth = planes.count[i] >= kFewest && planes.roundness[i] > kMinRoundness &&
                         planes.variance[i] <= rough * rough && incidence >= kGrazing;
     if (!smooth) {
       out.rejected_N.push_back(p_N);
@@ -125,8 +125,8 @@ void AddDepths(const BlockRow& row, int block_row, int columns, ViewImage& image
 
 }  // namespace
 
-SurfaceOfView LookAtBand(const ViewRaster& raster, const Foreground& foreground, double radius_m,
-                         int band, ViewImage& image) {
+SurfaceOfView ExtractSurfaceBand(const ViewRaster& raster, const Foreground& foreground,
+                                 double radius_m, int band, ViewImage& image) {
   SurfaceOfView out;
   const int first = band * kRowsPerBand;
   const int last = std::min(raster.block_rows(), first + kRowsPerBand);

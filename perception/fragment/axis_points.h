@@ -17,7 +17,8 @@ struct SurfacePoint {
   float weight;         ///< Cosine of the incidence.
 };
 
-/// Which points can belong to a tube in, on or out over the bin; everything else is the known cell.
+/// Which points can belong to a tube in the bin, on its rim or hanging out of it; all others belong
+/// to the cell (floor, walls, gripper) and are ignored.
 class Foreground {
  public:
   /// `margin_m`: how far outside the walls a tube may reach.
@@ -40,31 +41,33 @@ class Foreground {
   }
 
  private:
-  /// Floor points end here: noise at twice the data sheet plus hand-eye error stays below.
+  /// Points below are floor: its noise at twice the data sheet's value plus the hand-eye error
+  /// stays under this height.
   static constexpr float kFloor_m = 0.003f;
-  /// Points this close to a wall belong to it; of a tube that leans there only the strip that turns
-  /// to the wall is lost.
+  /// Points this close to a wall are wall. Of a tube that leans against it only the strip that
+  /// faces the wall is lost.
   static constexpr float kWall_m = 0.0025f;
-  /// Nothing that lies in a bin is higher; the gripper's fingers are.
+  /// Higher points are the gripper's fingers: nothing that lies in a bin reaches so high.
   static constexpr float kCeiling_m = 0.25f;
   float half_x_, half_y_, wall_, margin_;
 };
 
-/// What a part of a view shows of the foreground: blocks with a normal from a small window of their
-/// neighbours, and those without, where the surface grazes the ray, ends or is not smooth.
+/// The foreground in a part of a view: blocks whose normal could be fitted to a small window of
+/// neighbours, and the positions of those without a normal (the surface is seen at a grazing angle,
+/// ends there or is not smooth).
 struct SurfaceOfView {
   std::vector<SurfacePoint> points;
   std::vector<Eigen::Vector3f> rejected_N;
 };
 
-/// Rows of blocks that are looked at together; results do not depend on who looks at which.
+/// Rows of blocks that are read together: the unit of work for one thread.
 inline constexpr int kRowsPerBand = 64;
 static_assert(kRowsPerBand % kBlocksPerCell == 0);
 
-/// Reads the pixels of the band'th kRowsPerBand rows of blocks (and of a few neighbours) once:
-/// returns the surface there and fills the depths of that part of `image`, which belongs to
-/// `raster`. Points come in raster order. Thread safe for different bands.
-SurfaceOfView LookAtBand(const ViewRaster& raster, const Foreground& foreground, double radius_m,
-                         int band, ViewImage& image);
+/// Reads band number `band` (kRowsPerBand rows of blocks) of a view: returns the surface there, in
+/// raster order, and fills that part of the view's depth image `image`, made by MakeEmptyImage.
+/// Thread safe for different bands.
+SurfaceOfView ExtractSurfaceBand(const ViewRaster& raster, const Foreground& foreground,
+                                 double radius_m, int band, ViewImage& image);
 
 }  // namespace tubetwin

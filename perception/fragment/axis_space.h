@@ -19,8 +19,9 @@ struct AxisVoxel {
   int component = -1;   ///< -1: no tube axis passes here.
 };
 
-/// All axis points of all views in voxels, and the connected components of those that look like a
-/// curve: surfaces of touching tubes touch, but their axes stay two radii apart.
+/// The axis points of all views, averaged in voxels, and the connected components of the voxels
+/// that look like a curve. Components separate tubes well: where the surfaces of two tubes touch,
+/// their axes are still two radii apart.
 struct AxisSpace {
   VoxelGrid grid;
   std::vector<AxisVoxel> voxels;             ///< As the grid numbers them.

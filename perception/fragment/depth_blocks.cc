@@ -46,7 +46,7 @@ constexpr int kLanes = 4;
 
 }  // namespace
 
-BlockRows::BlockRows(const ViewRaster& raster, const Foreground& foreground)
+DepthBlocks::DepthBlocks(const ViewRaster& raster, const Foreground& foreground)
     : raster_(raster), foreground_(foreground) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) R_NS_[3 * i + j] = static_cast<float>(raster.X_NS.linear()(i, j));
@@ -57,7 +57,7 @@ BlockRows::BlockRows(const ViewRaster& raster, const Foreground& foreground)
   }
 }
 
-void BlockRows::SumPixels(int row) {
+void DepthBlocks::SumPixels(int row) {
   const int width = raster_.width;
   float* x = x_.data();
   float* y = y_.data();
@@ -103,7 +103,7 @@ void BlockRows::SumPixels(int row) {
   }
 }
 
-void BlockRows::MeanOfBlocks(BlockRow& out) {
+void DepthBlocks::MeanOfBlocks(BlockRow& out) {
   const int b = raster_.block, columns = raster_.block_columns();
   float* u = out.u.data() + kRowMargin;
   float* v = out.v.data() + kRowMargin;
@@ -141,7 +141,7 @@ void BlockRows::MeanOfBlocks(BlockRow& out) {
   }
 }
 
-void BlockRows::KeepForeground(BlockRow& out) {
+void DepthBlocks::KeepForeground(BlockRow& out) {
   const int columns = raster_.block_columns();
   float* u = out.u.data() + kRowMargin;
   float* v = out.v.data() + kRowMargin;
@@ -173,7 +173,7 @@ void BlockRows::KeepForeground(BlockRow& out) {
   }
 }
 
-void BlockRows::Fill(int row, BlockRow& out) {
+void DepthBlocks::Fill(int row, BlockRow& out) {
   const auto size = static_cast<std::size_t>(raster_.block_columns() + 2 * kRowMargin);
   for (auto* plane : {&out.u, &out.v, &out.w}) plane->resize(size, kNaN);
   out.near.resize(size, kInfinity);

@@ -6,8 +6,8 @@
 
 namespace tubetwin {
 
-/// Columns before the first and after the last block of a row that hold NaN, so that windows need
-/// not ask where the image ends.
+/// NaN columns before the first and after the last block of a row, so that windows need no test for
+/// the image's limits.
 inline constexpr int kRowMargin = 16;
 
 /// One row of blocks, structure of arrays; column c is at index c + kRowMargin.
@@ -20,12 +20,13 @@ struct BlockRow {
   std::vector<std::pair<int, int>> spans;
 };
 
-/// Averages pixels to blocks, row by row. Keeps scratch: one per thread.
-class BlockRows {
+/// Averages the pixels of a raster to blocks, one row of blocks at a time. Has working memory of
+/// its own: one object per thread.
+class DepthBlocks {
  public:
-  BlockRows(const ViewRaster& raster, const Foreground& foreground);
+  DepthBlocks(const ViewRaster& raster, const Foreground& foreground);
 
-  /// Row `row` of the raster's blocks; one outside of the image is empty.
+  /// Writes row `row` of the raster's blocks into `out`; a row outside of the image is empty.
   void Fill(int row, BlockRow& out);
 
  private:

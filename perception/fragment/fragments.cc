@@ -16,15 +16,15 @@ constexpr double kShortest_m = 0.012;
 /// Surface points per node that are kept for the refinement.
 constexpr double kPointsPerNode = 80.0;
 /// A piece whose points fit worse than this is no tube of this radius.
-constexpr double kLeastFit = 0.5;
+constexpr double kMinFit = 0.5;
 /// A tube's normals turn about its axis; those of an edge or a strip do not (rms sine).
-constexpr double kLeastSpread = 0.12;
+constexpr double kMinSpread = 0.12;
 /// Cosine to the outward tangent from which a normal is one of the rounded end, and from which it
 /// can hardly be one of a bend.
 constexpr double kOutward = 0.5;
 constexpr double kStraightOut = 0.72;
 /// Fewest well-fitting points of a node that stays at an end.
-constexpr double kLeastSupport = 4.0;
+constexpr double kMinSupport = 4.0;
 
 std::vector<SurfacePoint> Thin(const std::vector<SurfacePoint>& points,
                                const std::vector<int>& chosen, std::size_t keep) {
@@ -90,12 +90,12 @@ void StretchEnd(Polyline& line, int end, const std::vector<SurfacePoint>& points
 
 /// Drops end nodes that (almost) no point supports.
 void TrimEnds(Polyline& line, std::vector<double>& support) {
-  while (line.size() > 2 && support.back() < kLeastSupport) {
+  while (line.size() > 2 && support.back() < kMinSupport) {
     line.pop_back();
     support.pop_back();
   }
   std::size_t first = 0;
-  while (line.size() - first > 2 && support[first] < kLeastSupport) ++first;
+  while (line.size() - first > 2 && support[first] < kMinSupport) ++first;
   line.erase(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
@@ -136,7 +136,7 @@ Fragment FitTrace(const Trace& trace, const std::vector<SurfacePoint>& points,
   const auto keep = static_cast<std::size_t>(kPointsPerNode * static_cast<double>(line.size()));
   const std::vector<SurfacePoint> sample = Thin(points, chosen, keep);
   TubeFit fit = RefineCurve(line, sample, r);
-  if (fit.share < kLeastFit || fit.normal_spread < kLeastSpread) return out;
+  if (fit.share < kMinFit || fit.normal_spread < kMinSpread) return out;
   TrimEnds(line, fit.node_weight);
   out.length_m = Length(line);
   if (out.length_m < kShortest_m) {

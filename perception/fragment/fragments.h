@@ -17,7 +17,7 @@ struct FragmentEnd {
   Vector3 outward_N = Vector3::UnitX();  ///< Unit tangent, out of the fragment.
   /// 0..1: how much of a closed end (points whose normal looks outward) is seen.
   double cap = 0.0;
-  Vector3 bend_N = Vector3::Zero();  ///< Curvature (1/m): what the tangent gains on the way out.
+  Vector3 bend_N = Vector3::Zero();  ///< Curvature vector (1/m) of the curve, going outward.
 };
 
 /// A piece of one tube that was seen without interruption.
@@ -31,9 +31,9 @@ struct Fragment {
   std::array<FragmentEnd, 2> ends;             ///< At the first and the last node.
 };
 
-/// Orders every component into a curve and refines it: nodes move so that the surface points lie
-/// one radius away. Components that are no tube of this radius (too short, flat, badly fitting) are
-/// left out.
+/// Makes a curve of every component and refines it: its nodes are moved until the surface points
+/// lie one radius away from it. Components that do not fit a tube of this radius (too short, flat,
+/// large residuals) are left out.
 std::vector<Fragment> FindFragments(const AxisSpace& space, const std::vector<SurfacePoint>& points,
                                     double radius_m, Parallelism parallelism);
 

@@ -11,7 +11,7 @@ namespace tubetwin {
 namespace {
 
 constexpr int kPoints = 4000;
-constexpr std::size_t kNeighbours = 60, kLeastPairs = 5;
+constexpr std::size_t kNeighbours = 60, kMinPairs = 5;
 /// Radii within this share of one another are the same.
 constexpr double kSame = 0.06;
 
@@ -31,9 +31,9 @@ double RadiusAt(const std::vector<MeshPoint>& points, const MeshPoint& anchor) {
     if (dn.norm() < 0.1 || points[i].n.dot(anchor.n) < 0.3 || !(squared > 0.0)) continue;
     turn_and_radius.emplace_back(-dn.norm() / std::sqrt(squared), dp.dot(dn) / dn.squaredNorm());
   }
-  if (turn_and_radius.size() < kLeastPairs) return 0.0;
+  if (turn_and_radius.size() < kMinPairs) return 0.0;
   std::sort(turn_and_radius.begin(), turn_and_radius.end());
-  turn_and_radius.resize(std::max(kLeastPairs, turn_and_radius.size() / 4));
+  turn_and_radius.resize(std::max(kMinPairs, turn_and_radius.size() / 4));
   const auto middle =
       turn_and_radius.begin() + static_cast<std::ptrdiff_t>(turn_and_radius.size() / 2);
   std::nth_element(turn_and_radius.begin(), middle, turn_and_radius.end(),
@@ -56,12 +56,12 @@ LocalRadius FindLocalRadius(const Mesh& mesh) {
   std::sort(radii.begin(), radii.end());
   out.low_m = radii[radii.size() / 10];
   out.high_m = radii[radii.size() - 1 - radii.size() / 10];
-  std::ptrdiff_t most = -1;
+  std::ptrdiff_t max_count = -1;
   for (auto from = radii.begin(); from != radii.end(); ++from) {
     const auto to = std::upper_bound(from, radii.end(), *from * (1.0 + 2.0 * kSame));
-    if (to - from <= most) continue;
-    most = to - from;
-    out.radius_m = *(from + most / 2);
+    if (to - from <= max_count) continue;
+    max_count = to - from;
+    out.radius_m = *(from + max_count / 2);
   }
   return out;
 }

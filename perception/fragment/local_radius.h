@@ -6,12 +6,12 @@
 
 namespace tubetwin {
 
-/// How round a surface is where one looks at it closely.
+/// Statistics of a surface's local radius of curvature.
 struct LocalRadius {
   double radius_m = 0.0;             ///< The most common one.
   double low_m = 0.0, high_m = 0.0;  ///< 10th and 90th percentile.
   double round_share = 0.0;          ///< Of the surface that is round and bulges out.
-  std::vector<MeshPoint> points;     ///< Where it was looked at.
+  std::vector<MeshPoint> points;     ///< Where it was measured.
   std::vector<double> radii_m;       ///< Of each; 0 where the surface is flat or bulges in.
 };
 

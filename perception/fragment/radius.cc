@@ -9,7 +9,7 @@ namespace {
 
 /// Sum of squared differences of unit normals within slices: a tenth of a metre of tube has some
 /// hundred times this.
-constexpr double kLeastWeight = 5.0;
+constexpr double kMinWeight = 5.0;
 
 /// Places, per point, that the axis points of one radius take up.
 double Crowding(const std::vector<SurfacePoint>& points, float radius_m) {
@@ -29,7 +29,7 @@ std::optional<double> EstimateRadius(const std::vector<Fragment>& fragments) {
     estimates.emplace_back(f.radius_m, f.radius_weight);
     total += f.radius_weight;
   }
-  if (total < kLeastWeight) return std::nullopt;
+  if (total < kMinWeight) return std::nullopt;
   std::sort(estimates.begin(), estimates.end());
   double below = 0.0;
   for (const auto& [radius_m, weight] : estimates) {
@@ -40,11 +40,11 @@ std::optional<double> EstimateRadius(const std::vector<Fragment>& fragments) {
 }
 
 std::optional<double> SearchRadius(std::vector<SurfacePoint> points, Parallelism parallelism) {
-  constexpr std::size_t kMost = 20000, kFewest = 500;
+  constexpr std::size_t kMax = 20000, kFewest = 500;
   constexpr double kSmallest_m = 0.003, kLargest_m = 0.042, kRatio = 1.1;
   if (points.size() < kFewest) return std::nullopt;
   std::vector<SurfacePoint> some;
-  for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kMost) {
+  for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kMax) {
     some.push_back(points[i]);
   }
   double best_m = 0.0, fewest = 1e9;

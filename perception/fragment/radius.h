@@ -11,15 +11,15 @@ namespace tubetwin {
 /// Share by which the part's radius may differ from what the points say without a warning.
 inline constexpr double kRadiusTolerance = 0.05;
 
-/// Radius of the tubes from their points: the distance that best carries the points of a slice back
-/// along their normals onto one axis; the median over the fragments, long ones counting more.
-/// Exact within some per cent up to a quarter above or below the radius that the fragments were
-/// found with. Nothing when too little was seen.
+/// Radius of the tubes, estimated from their points: the distance by which the points of a slice
+/// must be moved back along their normals to meet best on one axis; the median over the fragments,
+/// weighted by length. Good to a few per cent when it is within 25 % of the radius that the
+/// fragments were found with. Nothing when too little was seen.
 std::optional<double> EstimateRadius(const std::vector<Fragment>& fragments);
 
-/// For when no tube was found: tries the radius at which the surface points, carried back along
-/// their normals, crowd into the fewest places. Nothing when they form no tube of that radius
-/// either.
+/// For scenes in which no tube of the part's radius was found: the radius for which the surface
+/// points, moved back along their normals by it, fill the fewest voxels. Nothing when no tube of
+/// that radius is found either.
 std::optional<double> SearchRadius(std::vector<SurfacePoint> points, Parallelism parallelism);
 
 /// What to tell a user whose part says `part_radius_m`; empty when the two agree within

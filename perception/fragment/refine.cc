@@ -18,7 +18,7 @@ constexpr double kAxisWeight = 0.05;
 /// Bending: a second difference of the nodes of 1 mm weighs as much as a residual of kScale_m.
 constexpr double kBend_m = 0.001;
 /// Many points of one node share their errors: together they count as this many at most.
-constexpr double kMostPerNode = 30.0;
+constexpr double kMaxPerNode = 30.0;
 
 /// Where a point belongs on the curve.
 struct Foot {
@@ -130,7 +130,7 @@ struct Equations {
   void Cap() {
     std::vector<double> factor(own.size());
     for (std::size_t k = 0; k < own.size(); ++k) {
-      factor[k] = weight[k] > kMostPerNode ? kMostPerNode / weight[k] : 1.0;
+      factor[k] = weight[k] > kMaxPerNode ? kMaxPerNode / weight[k] : 1.0;
     }
     for (std::size_t k = 0; k < own.size(); ++k) {
       own[k] *= factor[k];

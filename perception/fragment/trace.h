@@ -13,9 +13,9 @@ struct Trace {
   std::vector<int> voxels;  ///< Of space.voxels, those near the line.
 };
 
-/// Orders the voxels of one component by their distance along the component from its remotest end;
-/// what lies off the curve is traced again as a curve of its own. Pieces shorter than `shortest_m`
-/// are dropped.
+/// Orders the voxels of one component by their distance, measured within the component, from one of
+/// its two remotest voxels. Branches that lie off the resulting curve are traced as curves of their
+/// own. Pieces shorter than `shortest_m` are dropped.
 std::vector<Trace> TraceComponent(const AxisSpace& space, const std::vector<int>& component,
                                   double step_m, double shortest_m);
 

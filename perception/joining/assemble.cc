@@ -9,8 +9,8 @@ namespace tubetwin {
 namespace {
 
 /// Least seen part of a tube that is reported, as a share of its length and in radii.
-constexpr double kLeastSeen = 0.15;
-constexpr double kLeastSeenRadii = 4.0;
+constexpr double kMinSeen = 0.15;
+constexpr double kMinSeenRadii = 4.0;
 /// Radius by the points, as a share of the part's, from which on a chain is no tube of that part,
 /// and the weight of evidence that this needs. A part file that is 20 % wrong still gets its tubes.
 constexpr double kThinnest = 0.7, kThickest = 1.4;
@@ -61,9 +61,10 @@ double SeenLength(const PerceivedTube& tube) {
 
 /// Prolongs a tube's open ends by `lack_m` in all, evenly as far as both have room, into what no
 /// view saw.
-void Complete(PerceivedTube& tube, const Chain& chain, const HiddenWays& ways, double lack_m) {
-  Polyline added[2] = {ways.Find(chain.ends.front(), lack_m, true),
-                       ways.Find(chain.ends.back() ^ 1, lack_m, true)};
+void Complete(PerceivedTube& tube, const Chain& chain, const OccludedExtensions& extensions,
+              double lack_m) {
+  Polyline added[2] = {extensions.Find(chain.ends.front(), lack_m, true),
+                       extensions.Find(chain.ends.back() ^ 1, lack_m, true)};
   const auto wanted = static_cast<std::size_t>(std::ceil(lack_m / kNodeStep_m - 1e-9));
   // Both offer what is lacking, each takes its part; whole steps, the last one may be shorter.
   const std::size_t first = std::min(
@@ -128,7 +129,7 @@ bool TouchesBin(const Polyline& line, const Bin& bin) {
 std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
                                          const std::vector<Fragment>& fragments,
                                          const std::vector<Bridge>& bridges,
-                                         const HiddenSpace& space, const Bin& bin,
+                                         const OccludedSpace& space, const Bin& bin,
                                          double tube_length_m) {
   std::vector<const Chain*> order;
   for (const Chain& chain : chains) order.push_back(&chain);
@@ -136,17 +137,17 @@ std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
     return *std::min_element(a->ends.begin(), a->ends.end()) <
            *std::min_element(b->ends.begin(), b->ends.end());
   });
-  const double least_m = std::max(kLeastSeen * tube_length_m, kLeastSeenRadii * space.radius_m());
-  const HiddenWays ways(fragments, space);
+  const double min_m = std::max(kMinSeen * tube_length_m, kMinSeenRadii * space.radius_m());
+  const OccludedExtensions extensions(fragments, space);
   std::vector<PerceivedTube> out;
   for (const Chain* chain : order) {
     PerceivedTube tube = Concatenate(*chain, fragments, bridges);
     const double seen_m = SeenLength(tube);
-    if (seen_m < least_m || !IsRound(*chain, fragments, space.radius_m())) continue;
+    if (seen_m < min_m || !IsRound(*chain, fragments, space.radius_m())) continue;
     if (HasOtherRadius(*chain, fragments, space.radius_m())) continue;
     if (!TouchesBin(tube.centerline_N, bin)) continue;
     const double lack_m = tube_length_m - chain->length_m;
-    if (lack_m > kLack_m) Complete(tube, *chain, ways, lack_m);
+    if (lack_m > kLack_m) Complete(tube, *chain, extensions, lack_m);
     tube.id = static_cast<int>(out.size());
     tube.radius_m = space.radius_m();
     tube.length_m = Length(tube.centerline_N);

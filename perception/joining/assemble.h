@@ -7,14 +7,14 @@
 
 namespace tubetwin {
 
-/// Turns chains into tubes: fragments and bridges in one centerline, hidden ends completed to the
-/// part's length where nothing speaks against it. Chains of which too little was seen, and those
-/// that lie wholly outside the bin, are left out. Ids count from 0 in the order of the chains'
-/// first fragments.
+/// Turns chains into tubes: fragments and bridges become one centerline, which is extended at its
+/// ends to the part's length where occluded space allows it. Chains of which too little was seen,
+/// and those that lie wholly outside the bin, are left out. Ids count from 0 in the order of the
+/// chains' first fragments.
 std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
                                          const std::vector<Fragment>& fragments,
                                          const std::vector<Bridge>& bridges,
-                                         const HiddenSpace& space, const Bin& bin,
+                                         const OccludedSpace& space, const Bin& bin,
                                          double tube_length_m);
 
 }  // namespace tubetwin

@@ -43,21 +43,21 @@ constexpr double kShortestChord_m = 0.02;
 
 }  // namespace
 
-HiddenSpace::HiddenSpace(const std::vector<ViewImage>& views, const Bin& bin, double radius_m)
+OccludedSpace::OccludedSpace(const std::vector<ViewImage>& views, const Bin& bin, double radius_m)
     : views_(views), bin_(bin), radius_m_(radius_m) {}
 
-Sight HiddenSpace::Look(const Vector3& p_N) const {
-  Sight out = Sight::kOutside;
+Visibility OccludedSpace::Query(const Vector3& p_N) const {
+  Visibility out = Visibility::kOutside;
   for (const ViewImage& view : views_) {
-    const Sight sight = LookAt(view, p_N, radius_m_, kSlack * radius_m_);
-    if (sight == Sight::kSeenThrough) return sight;
+    const Visibility visibility = QueryVisibility(view, p_N, radius_m_, kSlack * radius_m_);
+    if (visibility == Visibility::kSeenThrough) return visibility;
     // The most telling of the others: enumerators grow with what they say.
-    out = std::max(out, sight);
+    out = std::max(out, visibility);
   }
   return out;
 }
 
-bool HiddenSpace::FitsBin(const Vector3& p_N) const {
+bool OccludedSpace::FitsBin(const Vector3& p_N) const {
   const double r = radius_m_;
   if (p_N.z() < r - 0.003) return false;
   if (p_N.z() > bin_.wall_m()) return true;
@@ -112,7 +112,7 @@ double BendingEnergy(const FragmentEnd& a, const FragmentEnd& b) {
 
 /// What a way through the unseen costs beyond its shape; nothing when something forbids it.
 std::optional<double> CostOfPlace(const Bridge& bridge, const NearLines& lines,
-                                  const HiddenSpace& space) {
+                                  const OccludedSpace& space) {
   const double r = space.radius_m();
   int unknown = 0, denied_in_a_row = 0;
   double nearest = 2 * r;  // What is further away costs nothing.
@@ -122,10 +122,10 @@ std::optional<double> CostOfPlace(const Bridge& bridge, const NearLines& lines,
     if (!space.FitsBin(p)) return std::nullopt;
     nearest = lines.Distance(p, nearest, bridge.end_a / 2, bridge.end_b / 2);
     if (nearest < kClosestRadii * r) return std::nullopt;
-    const Sight sight = space.Look(p);
-    denied_in_a_row = sight == Sight::kSeenThrough ? denied_in_a_row + 1 : 0;
+    const Visibility visibility = space.Query(p);
+    denied_in_a_row = visibility == Visibility::kSeenThrough ? denied_in_a_row + 1 : 0;
     if (denied_in_a_row >= 2) return std::nullopt;
-    unknown += sight == Sight::kUnknown || sight == Sight::kOutside;
+    unknown += visibility == Visibility::kUnknown || visibility == Visibility::kOutside;
   }
   const double depth = std::max(0.0, 2 * r - kContact_m - nearest) / kPenetrationUnit_m;
   return depth * depth +
@@ -134,7 +134,7 @@ std::optional<double> CostOfPlace(const Bridge& bridge, const NearLines& lines,
 
 /// The cheapest bridge between two ends; nothing when every way is forbidden or too dear.
 std::optional<Bridge> BestWay(const std::vector<Fragment>& fragments, const NearLines& lines, int i,
-                              int k, const HiddenSpace& space, double longest_m) {
+                              int k, const OccludedSpace& space, double longest_m) {
   const FragmentEnd& a = fragments[static_cast<std::size_t>(i / 2)].ends[i % 2];
   const FragmentEnd& b = fragments[static_cast<std::size_t>(k / 2)].ends[k % 2];
   const double chord = (b.p_N - a.p_N).norm();
@@ -162,7 +162,7 @@ std::optional<Bridge> BestWay(const std::vector<Fragment>& fragments, const Near
 
 }  // namespace
 
-std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const HiddenSpace& space,
+std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const OccludedSpace& space,
                                 double longest_m) {
   std::vector<Bridge> out;
   NearLines lines;

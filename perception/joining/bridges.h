@@ -8,15 +8,15 @@
 
 namespace tubetwin {
 
-/// Tests whether a piece of tube can be where nothing of it was segmented. Keeps references: views
-/// and bin must outlive it. Thread safe.
-class HiddenSpace {
+/// Says whether a tube can pass where no part of it was found: hidden behind something, or where no
+/// view looks. Keeps references: views and bin must outlive it. Thread safe.
+class OccludedSpace {
  public:
-  HiddenSpace(const std::vector<ViewImage>& views, const Bin& bin, double radius_m);
+  OccludedSpace(const std::vector<ViewImage>& views, const Bin& bin, double radius_m);
 
-  /// What all views together say about one axis point: seen through in any view wins, then a
-  /// surface, hidden, unknown; outside when no view reaches there.
-  Sight Look(const Vector3& p_N) const;
+  /// What all views together say about one point of an axis: the strongest statement of any view,
+  /// in the order of Visibility.
+  Visibility Query(const Vector3& p_N) const;
 
   /// Whether a tube's axis may pass here as far as floor and walls are concerned.
   bool FitsBin(const Vector3& p_N) const;
@@ -29,19 +29,20 @@ class HiddenSpace {
   double radius_m_;
 };
 
-/// A way from one fragment's end to another's through what was not seen.
+/// A curve that may connect the ends of two fragments of the same tube through occluded space.
 struct Bridge {
   int end_a = 0, end_b = 0;  ///< 2 * fragment + end.
   Polyline line_N;           ///< Both ends included, nodes at most kNodeStep_m apart.
   double length_m = 0.0;
-  /// Negative log-odds (nats) that it is true: bending, gap, what the views do not confirm, closed
-  /// ends. Below 0: more likely true than not.
+  /// Negative log-odds (nats) that the two belong together, from the bending and the length of the
+  /// gap, the share of it that no view confirms as occluded, and the caps seen at its ends. Below
+  /// 0: more likely than not.
   double cost = 0.0;
 };
 
-/// All bridges that nothing forbids: along the whole way no view sees past it, it keeps off the
-/// axes of all other fragments, and it stays in the bin.
-std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const HiddenSpace& space,
+/// All bridges, at most `longest_m` long, that are possible: no view sees through any part of them,
+/// they keep clear of all other fragments, and they stay inside the bin.
+std::vector<Bridge> FindBridges(const std::vector<Fragment>& fragments, const OccludedSpace& space,
                                 double longest_m);
 
 }  // namespace tubetwin

@@ -15,7 +15,7 @@ constexpr double kLengthSigma_m = 0.004;
 constexpr double kBridgeSigma = 0.06;
 /// The most that a wrong length costs: chains of fragments that are no whole tube exist (debris,
 /// fragments that were not found).
-constexpr double kMostLength = 7.0;
+constexpr double kMaxLength = 7.0;
 /// Hidden length that costs 1, and what hiding costs at all.
 constexpr double kHiddenUnit_m = 0.12;
 constexpr double kHidden = 0.5;
@@ -23,17 +23,17 @@ constexpr double kHidden = 0.5;
 constexpr double kRoomSlack = 1.3;
 constexpr double kRoomSlack_m = 0.015;
 /// Bounds on the search; never reached by piles of two dozen tubes.
-constexpr std::size_t kMostTried = 300000;
-constexpr std::size_t kMostFragments = 12;
+constexpr std::size_t kMaxTried = 300000;
+constexpr std::size_t kMaxFragments = 12;
 constexpr int kBridgesPerEnd = 8;
 
 class ChainFinder {
  public:
   ChainFinder(const std::vector<Fragment>& fragments, const std::vector<Bridge>& bridges,
-              const std::vector<double>& rooms_m, double tube_length_m)
+              const std::vector<double>& max_extensions_m, double tube_length_m)
       : fragments_(fragments),
         bridges_(bridges),
-        rooms_m_(rooms_m),
+        max_extensions_m_(max_extensions_m),
         tube_length_m_(tube_length_m),
         at_end_(2 * fragments.size()) {
     std::vector<int> order(bridges.size());
@@ -80,14 +80,16 @@ class ChainFinder {
     double off_m = chain.length_m - tube_length_m_;
     double cost = 0.0;
     if (off_m < -sigma_m) {
-      const double room_m = rooms_m_[static_cast<std::size_t>(chain.ends.front())] +
-                            rooms_m_[static_cast<std::size_t>(chain.ends.back() ^ 1)];
-      const double slack_m = room_m > 0.0 ? kRoomSlack * room_m + kRoomSlack_m : 0.0;
+      const double max_extension_m =
+          max_extensions_m_[static_cast<std::size_t>(chain.ends.front())] +
+          max_extensions_m_[static_cast<std::size_t>(chain.ends.back() ^ 1)];
+      const double slack_m =
+          max_extension_m > 0.0 ? kRoomSlack * max_extension_m + kRoomSlack_m : 0.0;
       const double hidden_m = std::min(-off_m, slack_m);
       if (hidden_m > 0.0) cost = kHidden + hidden_m / kHiddenUnit_m;
       off_m += hidden_m;
     }
-    return cost + std::min(kMostLength, 0.5 * off_m * off_m / (sigma_m * sigma_m));
+    return cost + std::min(kMaxLength, 0.5 * off_m * off_m / (sigma_m * sigma_m));
   }
 
   /// Cost of the part of a chain from fragment `from` to `to`, the latter excluded.
@@ -126,7 +128,7 @@ class ChainFinder {
       closed.cost += EndCost(chain);
       if (!CheaperCut(closed)) chains_.push_back(std::move(closed));
     }
-    if (chain.ends.size() >= kMostFragments || ++tried_ > kMostTried) return;
+    if (chain.ends.size() >= kMaxFragments || ++tried_ > kMaxTried) return;
     for (const int i : at_end_[static_cast<std::size_t>(exit)]) {
       const Bridge& bridge = bridges_[static_cast<std::size_t>(i)];
       const int entry = bridge.end_a == exit ? bridge.end_b : bridge.end_a;
@@ -147,7 +149,7 @@ class ChainFinder {
 
   const std::vector<Fragment>& fragments_;
   const std::vector<Bridge>& bridges_;
-  const std::vector<double>& rooms_m_;
+  const std::vector<double>& max_extensions_m_;
   double tube_length_m_;
   std::vector<std::vector<int>> at_end_;
   std::vector<Chain> chains_;
@@ -158,8 +160,8 @@ class ChainFinder {
 
 std::vector<Chain> FindChains(const std::vector<Fragment>& fragments,
                               const std::vector<Bridge>& bridges,
-                              const std::vector<double>& rooms_m, double tube_length_m) {
-  return ChainFinder(fragments, bridges, rooms_m, tube_length_m).FindAll();
+                              const std::vector<double>& max_extensions_m, double tube_length_m) {
+  return ChainFinder(fragments, bridges, max_extensions_m, tube_length_m).FindAll();
 }
 
 }  // namespace tubetwin

@@ -6,10 +6,10 @@
 
 namespace tubetwin {
 
-/// All chains that are worth a thought: no longer than a tube, and dearer in pieces. Every fragment
-/// alone is among them. Ascending in cost.
+/// The candidate chains for JoinFragments: no longer than a tube, and cheaper than the same
+/// fragments in two separate chains. Every fragment alone is one of them. Sorted by cost.
 std::vector<Chain> FindChains(const std::vector<Fragment>& fragments,
                               const std::vector<Bridge>& bridges,
-                              const std::vector<double>& rooms_m, double tube_length_m);
+                              const std::vector<double>& max_extensions_m, double tube_length_m);
 
 }  // namespace tubetwin

@@ -10,7 +10,7 @@ namespace tubetwin {
 namespace {
 
 /// Steps of the search for the best set and for each runner-up.
-constexpr int kMostSteps = 200000;
+constexpr int kMaxSteps = 200000;
 constexpr int kRunnerUpSteps = 3000;
 /// Steps of the ascent to the duals.
 constexpr int kAscents = 120;
@@ -111,10 +111,11 @@ class SetPartition {
     for (std::size_t c = 0; c < chains_.size(); ++c) slack[c] = Reduced(chains_[c], dual);
     double sum = 0.0;
     for (std::size_t f = 0; f < dual.size(); ++f) {
-      double least = kInfinity;
-      for (const int c : of_row_[f]) least = std::min(least, slack[static_cast<std::size_t>(c)]);
-      dual[f] += least;
-      for (const int c : of_row_[f]) slack[static_cast<std::size_t>(c)] -= least;
+      double min_slack = kInfinity;
+      for (const int c : of_row_[f])
+        min_slack = std::min(min_slack, slack[static_cast<std::size_t>(c)]);
+      dual[f] += min_slack;
+      for (const int c : of_row_[f]) slack[static_cast<std::size_t>(c)] -= min_slack;
       sum += dual[f];
     }
     return sum;
@@ -174,15 +175,16 @@ class SetPartition {
 
 std::vector<Chain> JoinFragments(const std::vector<Fragment>& fragments,
                                  const std::vector<Bridge>& bridges,
-                                 const std::vector<double>& rooms_m, double tube_length_m) {
-  const std::vector<Chain> chains = FindChains(fragments, bridges, rooms_m, tube_length_m);
+                                 const std::vector<double>& max_extensions_m,
+                                 double tube_length_m) {
+  const std::vector<Chain> chains = FindChains(fragments, bridges, max_extensions_m, tube_length_m);
   SetPartition partition(chains, fragments.size());
-  const std::vector<int> best = partition.Solve(-1, kInfinity, kMostSteps);
+  const std::vector<int> best = partition.Solve(-1, kInfinity, kMaxSteps);
   const double cost = partition.best_cost();
   std::vector<Chain> out;
   for (const int c : best) {
     out.push_back(chains[static_cast<std::size_t>(c)]);
-    partition.Solve(c, cost + kMostMargin, kRunnerUpSteps);
+    partition.Solve(c, cost + kMaxMargin, kRunnerUpSteps);
     out.back().margin = partition.best_cost() - cost;
   }
   return out;

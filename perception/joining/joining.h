@@ -12,19 +12,20 @@ struct Chain {
   std::vector<int> bridges;  ///< Index into the bridges, one less than fragments.
   double length_m = 0.0;     ///< Fragments and bridges.
   double cost = 0.0;
-  /// How much dearer (in nats) the best explanation of the scene without this chain is; at most
-  /// kMostMargin.
+  /// By how much (nats) the cost of the whole scene would rise if this chain were not allowed; at
+  /// most kMaxMargin. Large: there is no good alternative.
   double margin = 0.0;
 };
 
-inline constexpr double kMostMargin = 6.0;
+inline constexpr double kMaxMargin = 6.0;
 
-/// Most likely way to make tubes of all fragments: every fragment in exactly one chain, no chain
-/// longer than a tube, each chain charged for its bridges and for the length that it lacks beyond
-/// what its ends can hide (`rooms_m`, by end). Exact for the usual piles (branch and bound over
-/// sets of chains with bounds from Lagrangian duals, and a step limit that keeps the best found).
+/// The most likely assignment of all fragments to tubes: every fragment is in exactly one chain,
+/// and the sum of the chains' costs is smallest. A chain costs what its bridges cost, and more the
+/// more it is shorter than a tube, as far as its two ends cannot hide the rest (`max_extensions_m`,
+/// by end). Exact for the usual piles: branch and bound over sets of chains with bounds from
+/// Lagrangian duals. After a fixed number of steps the best assignment found so far is taken.
 std::vector<Chain> JoinFragments(const std::vector<Fragment>& fragments,
                                  const std::vector<Bridge>& bridges,
-                                 const std::vector<double>& rooms_m, double tube_length_m);
+                                 const std::vector<double>& max_extensions_m, double tube_length_m);
 
 }  // namespace tubetwin

@@ -6,32 +6,34 @@
 namespace tubetwin {
 namespace {
 
-/// An end with this much of a cap seen hides nothing behind it.
+/// With this much of its cap seen, the tube ends here.
 constexpr double kClosedCap = 0.5;
-/// Other axes stay this far off, in radii: the way is a guess.
+/// Distance to the axes of other fragments, in radii. Two touching tubes are 2 apart; less is asked
+/// because an extension is a guess.
 constexpr double kClearance = 1.6;
-/// Sharper bends (1/m) are errors of the parabola at the end.
-constexpr double kSharpest = 25.0;
-/// A less likely way must be this much longer.
+/// Larger curvatures (1/m) of an end are errors of its fit.
+constexpr double kMaxCurvature = 25.0;
+/// An extension that is tried later must be this much longer than an earlier one.
 constexpr double kClearly_m = 0.010;
-/// Bends (1/m) of the ways that turn somehow, and in how many directions each.
+/// Curvatures (1/m) that are tried to all sides, and to how many sides each.
 constexpr double kTurns[] = {5.0, 12.0, 20.0};
 constexpr int kDirections = 8;
 
 }  // namespace
 
-HiddenWays::HiddenWays(const std::vector<Fragment>& fragments, const HiddenSpace& space)
+OccludedExtensions::OccludedExtensions(const std::vector<Fragment>& fragments,
+                                       const OccludedSpace& space)
     : fragments_(fragments), space_(space) {
   for (const Fragment& fragment : fragments) lines_.Add(fragment.line_N);
 }
 
-Polyline HiddenWays::Follow(const FragmentEnd& end, int fragment, const Vector3& bend_N,
-                            double wanted_m) const {
+Polyline OccludedExtensions::Follow(const FragmentEnd& end, int fragment, const Vector3& bend_N,
+                                    double wanted_m) const {
   const double bend = bend_N.norm();
   Vector3 p = end.p_N, t = end.outward_N;
   Vector3 side = bend > 1e-6 ? Vector3(bend_N / bend) : Vector3::Zero();
   Polyline out;
-  std::size_t hidden = 0;  // Nodes up to the last one that no view sees.
+  std::size_t hidden = 0;  // Number of nodes up to the last occluded one.
   double left_m = wanted_m;
   for (int denied = 0; left_m > 1e-6 && denied < 2;) {
     const double step_m = std::min(kNodeStep_m, left_m);
@@ -42,13 +44,14 @@ Polyline HiddenWays::Follow(const FragmentEnd& end, int fragment, const Vector3&
     side = std::cos(bend * step_m) * side - std::sin(bend * step_m) * t;
     t = turned;
     if (!space_.FitsBin(p)) break;
-    const double least_m = kClearance * space_.radius_m();
-    if (lines_.Distance(p, 2 * least_m, fragment) < least_m) break;
+    const double min_m = kClearance * space_.radius_m();
+    if (lines_.Distance(p, 2 * min_m, fragment) < min_m) break;
     out.push_back(p);
     left_m -= step_m;
-    // Next to its end a way is where the fragment's own edge is seen.
-    const Sight sight = space_.Look(p);
-    const bool seen = sight == Sight::kSurface || sight == Sight::kSeenThrough;
+    // Close to the fragment a view may see the fragment's own edge instead: one such node is let
+    // pass, two in a row are not.
+    const Visibility visibility = space_.Query(p);
+    const bool seen = visibility == Visibility::kSurface || visibility == Visibility::kSeenThrough;
     denied = seen ? denied + 1 : 0;
     if (!seen) hidden = out.size();
   }
@@ -56,25 +59,26 @@ Polyline HiddenWays::Follow(const FragmentEnd& end, int fragment, const Vector3&
   return out;
 }
 
-Polyline HiddenWays::Find(int end, double wanted_m, bool turning) const {
+Polyline OccludedExtensions::Find(int end, double wanted_m, bool any_direction) const {
   const FragmentEnd& e = fragments_[static_cast<std::size_t>(end / 2)].ends[end % 2];
   if (e.cap >= kClosedCap || wanted_m <= 0.0) return {};
   const double enough_m = wanted_m - 1e-6;
   Polyline best;
   double best_m = 0.0;
   const auto offer = [&](const Vector3& bend_N, double advantage_m) {
-    Polyline way = Follow(e, end / 2, bend_N, wanted_m);
-    const double length_m = std::min(wanted_m, kNodeStep_m * static_cast<double>(way.size()));
+    Polyline extension = Follow(e, end / 2, bend_N, wanted_m);
+    const double length_m = std::min(wanted_m, kNodeStep_m * static_cast<double>(extension.size()));
     if (length_m > best_m + advantage_m || (length_m > best_m && length_m >= enough_m)) {
-      best = std::move(way);
+      best = std::move(extension);
       best_m = length_m;
     }
     return best_m >= enough_m;
   };
   const double sharp = e.bend_N.norm();
-  const Vector3 bend_N = sharp > kSharpest ? Vector3(kSharpest / sharp * e.bend_N) : e.bend_N;
+  const Vector3 bend_N =
+      sharp > kMaxCurvature ? Vector3(kMaxCurvature / sharp * e.bend_N) : e.bend_N;
   if (offer(bend_N, 0.0) || offer(0.5 * bend_N, kClearly_m) || offer(Vector3::Zero(), kClearly_m) ||
-      !turning) {
+      !any_direction) {
     return best;
   }
   const Vector3 u = e.outward_N.unitOrthogonal(), v = e.outward_N.cross(u);
@@ -87,13 +91,13 @@ Polyline HiddenWays::Find(int end, double wanted_m, bool turning) const {
   return best;
 }
 
-std::vector<double> MeasureRooms(const std::vector<Fragment>& fragments, const HiddenSpace& space,
-                                 double longest_m) {
-  const HiddenWays ways(fragments, space);
+std::vector<double> MaxOccludedExtensions(const std::vector<Fragment>& fragments,
+                                          const OccludedSpace& space, double longest_m) {
+  const OccludedExtensions extensions(fragments, space);
   std::vector<double> out;
   for (int end = 0; end < 2 * static_cast<int>(fragments.size()); ++end) {
-    const Polyline way = ways.Find(end, longest_m, false);
-    out.push_back(std::min(longest_m, kNodeStep_m * static_cast<double>(way.size())));
+    const Polyline extension = extensions.Find(end, longest_m, false);
+    out.push_back(std::min(longest_m, kNodeStep_m * static_cast<double>(extension.size())));
   }
   return out;
 }

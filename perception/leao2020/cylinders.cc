@@ -74,11 +74,11 @@ Run LongestRun(const Points& points, const std::vector<int>& inliers, const Eige
   std::vector<int> filled;
   std::copy_if(count.begin(), count.end(), std::back_inserter(filled), [](int c) { return c > 0; });
   std::nth_element(filled.begin(), filled.begin() + filled.size() / 2, filled.end());
-  const double least = config.least_density * filled[filled.size() / 2];
+  const double min_count = config.least_density * filled[filled.size() / 2];
   const auto gap = static_cast<std::size_t>(config.cylinder_gap_m / kSlice_m);
   std::size_t best = 0, best_end = 0, begin = 0, end = 0;  // Slices [begin, end).
   for (std::size_t k = 0; k < count.size(); ++k) {
-    if (count[k] == 0 || count[k] < least) continue;
+    if (count[k] == 0 || count[k] < min_count) continue;
     if (end == begin || k > end + gap) begin = k;
     end = k + 1;
     if (end - begin > best_end - best) {
@@ -143,14 +143,14 @@ std::vector<LeaoCylinder> FitSegment(const Points::Ptr& points, const Normals::P
                                      std::vector<int> left, double radius_m,
                                      const Leao2020Config& config) {
   std::vector<LeaoCylinder> out;
-  const int least = std::max(
+  const int min_count = std::max(
       config.least_points, static_cast<int>(config.least_share * static_cast<double>(left.size())));
   double densest = 0.0;  // Points per metre.
-  while (static_cast<int>(left.size()) >= least) {
+  while (static_cast<int>(left.size()) >= min_count) {
     const Fit fit = FitOne(points, normals, left, radius_m, config);
     if (!fit.found) break;
     const Run run = LongestRun(*points, fit.inliers, fit.p_N, fit.axis_N, config);
-    if (static_cast<int>(run.points.size()) < least) break;
+    if (static_cast<int>(run.points.size()) < min_count) break;
     const Vector3 p_N = fit.p_N.cast<double>(), axis_N = fit.axis_N.cast<double>();
     LeaoCylinder cylinder;
     cylinder.end_N = {p_N + run.from_m * axis_N, p_N + run.to_m * axis_N};

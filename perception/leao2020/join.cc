@@ -11,13 +11,13 @@ double AngleDeg(const Vector3& a, const Vector3& b) {
 }
 
 /// What one view says about a gap.
-enum class GapSight { kNothing, kHidden, kSeen };
+enum class GapVisibility { kNothing, kHidden, kSeen };
 
-GapSight LookAtGap(const ViewImage& view, const Vector3& p_NA, const Vector3& p_NB,
-                   double window_m) {
-  if (view.width == 0) return GapSight::kNothing;
+GapVisibility QueryGap(const ViewImage& view, const Vector3& p_NA, const Vector3& p_NB,
+                       double window_m) {
+  if (view.width == 0) return GapVisibility::kNothing;
   const Vector3 a = view.X_SN * p_NA, b = view.X_SN * p_NB;
-  if (a.z() <= 0.0 || b.z() <= 0.0) return GapSight::kNothing;
+  if (a.z() <= 0.0 || b.z() <= 0.0) return GapVisibility::kNothing;
   const auto column_of = [&](const Vector3& p) { return view.fx * p.x() / p.z() + view.cx; };
   const auto row_of = [&](const Vector3& p) { return view.fy * p.y() / p.z() + view.cy; };
   const long column = std::lround(0.5 * (column_of(a) + column_of(b)));
@@ -26,7 +26,7 @@ GapSight LookAtGap(const ViewImage& view, const Vector3& p_NA, const Vector3& p_
   const long half = std::max(1L, std::lround(window_m / view.pitch_m));
   if (column + half < 0 || row + half < 0 || column - half >= view.width ||
       row - half >= view.height) {
-    return GapSight::kNothing;
+    return GapVisibility::kNothing;
   }
   bool returns = false;
   for (long j = std::max(0L, row - half); j <= std::min<long>(view.height - 1, row + half); ++j) {
@@ -35,10 +35,10 @@ GapSight LookAtGap(const ViewImage& view, const Vector3& p_NA, const Vector3& p_
       const float z = view.z_near[view.Index(static_cast<int>(i), static_cast<int>(j))];
       if (!(z == z)) continue;
       returns = true;
-      if (z < deepest) return GapSight::kHidden;
+      if (z < deepest) return GapVisibility::kHidden;
     }
   }
-  return returns ? GapSight::kSeen : GapSight::kNothing;
+  return returns ? GapVisibility::kSeen : GapVisibility::kNothing;
 }
 
 struct Pair {
@@ -109,9 +109,9 @@ bool IsGapHidden(const std::vector<ViewImage>& views, const Vector3& p_NA, const
                  double window_m) {
   bool hidden = false;
   for (const ViewImage& view : views) {
-    const GapSight sight = LookAtGap(view, p_NA, p_NB, window_m);
-    if (sight == GapSight::kSeen) return false;
-    hidden = hidden || sight == GapSight::kHidden;
+    const GapVisibility visibility = QueryGap(view, p_NA, p_NB, window_m);
+    if (visibility == GapVisibility::kSeen) return false;
+    hidden = hidden || visibility == GapVisibility::kHidden;
   }
   return hidden;
 }

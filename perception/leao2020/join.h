@@ -25,9 +25,9 @@ struct LeaoJoint {
 LeaoJoint MeasureJoint(const LeaoCylinder& a, int end_a, const LeaoCylinder& b, int end_b,
                        double radius_m);
 
-/// The visibility condition: halfway between both endpoints in the depth image some pixel of a
-/// small window is nearer than the deeper endpoint. With several views no view may show a gap and
-/// at least one must show that there is none.
+/// The paper's visibility condition: in the depth image, halfway between both endpoints, some pixel
+/// of a small window is nearer than the deeper endpoint, so that something may hide the joint. With
+/// several views at least one must say so, and none may see a gap there.
 bool IsGapHidden(const std::vector<ViewImage>& views, const Vector3& p_NA, const Vector3& p_NB,
                  double window_m);
 

@@ -54,11 +54,11 @@ PerceivedTube MakeTube(const LeaoTube& chain, const std::vector<LeaoCylinder>& c
 std::vector<PerceivedTube> MakeLeaoTubes(const std::vector<LeaoTube>& chains,
                                          const std::vector<LeaoCylinder>& cylinders,
                                          const Part& part, const Leao2020Config& config) {
-  const double least_m =
+  const double min_m =
       part.length_m * (part.is_hose() ? config.least_share_hose : config.least_share_rigid);
   std::vector<PerceivedTube> out;
   for (const LeaoTube& chain : chains) {
-    if (chain.length_m < least_m) continue;
+    if (chain.length_m < min_m) continue;
     PerceivedTube tube = MakeTube(chain, cylinders);
     const int occluded = CountOccludedJoints(chain, cylinders);
     tube.id = static_cast<int>(out.size());

@@ -16,7 +16,7 @@ namespace {
 constexpr double kRadius_m = 0.0125;
 constexpr double kAreaPerPoint_m2 = 2e-6;
 constexpr double kStep_m = 0.0025;  ///< Between nodes of the finished axis.
-constexpr double kMostNodes = 400.0;
+constexpr double kMaxNodes = 400.0;
 constexpr double kPointsPerNode = 60.0;
 constexpr double kLongestGap_m = 2.5 * kRadius_m;
 constexpr double kShortestAxis_m = 1.5 * kRadius_m;
@@ -96,8 +96,8 @@ void MoveEnd(Polyline& line, bool first, const std::vector<SurfacePoint>& points
     if (s < -kBack_m || s > kAhead_m || (d - s * t).norm() > kBeside_m) continue;
     const Vector3 n = point.n_N.cast<double>();
     const double angle = std::atan2(n.dot(v), n.dot(u)) + kPi;
-    double& most = furthest[static_cast<std::size_t>(std::min(7.0, angle / (2.0 * kPi) * 8.0))];
-    most = std::max(most, s);
+    double& sector_m = furthest[static_cast<std::size_t>(std::min(7.0, angle / (2.0 * kPi) * 8.0))];
+    sector_m = std::max(sector_m, s);
   }
   std::sort(furthest.begin(), furthest.end());
   const double move = 0.5 * (furthest[3] + furthest[4]);
@@ -131,7 +131,7 @@ void Finish(Polyline& line, const std::vector<SurfacePoint>& points) {
   constexpr int kTimes = 3;
   for (int i = 0; i < kTimes; ++i) {
     for (const bool first : {true, false}) MoveEnd(line, first, points);
-    line = Resample(line, std::max(kStep_m, Length(line) / kMostNodes));
+    line = Resample(line, std::max(kStep_m, Length(line) / kMaxNodes));
     const std::vector<SurfacePoint> wall = WallOf(line, points);
     if (wall.empty()) return;
     RefineCurve(line, wall, kRadius_m);

@@ -14,12 +14,12 @@ constexpr int kRounds = 5;
 /// The radius counts as found when it moves by less than this share.
 constexpr double kSettled = 0.002;
 constexpr double kLargestSpread = 0.10;
-constexpr double kLeastRound = 0.25;
+constexpr double kMinRound = 0.25;
 constexpr double kShortest = 4.0;  ///< Least length in radii.
 /// Parts end at 3 and 40 mm and at 2 m (models/part.h); a first look may be this much off.
 constexpr double kThinnest_m = 0.003, kThickest_m = 0.04, kLongest_m = 2.0, kLeeway = 1.1;
 /// Surface further out than this many radii is not the tube's, and how much of that may be.
-constexpr double kOutside = 1.15, kMostOutside = 0.02;
+constexpr double kOutside = 1.15, kMaxOutside = 0.02;
 
 std::string Mm(double m) {
   char text[32];
@@ -154,7 +154,7 @@ MeshTube Judge(MeshTube tube, const std::vector<Polyline>& axes, const std::vect
                                      Mm(r) + "; a tube is at least four radii long");
   } else if (RunsIntoItself(tube)) {
     refuse(MeshVerdict::kClosed, "it is a ring; a tube has two ends");
-  } else if (const double outside = ShareOutside(pieces.front(), tube); outside > kMostOutside) {
+  } else if (const double outside = ShareOutside(pieces.front(), tube); outside > kMaxOutside) {
     refuse(MeshVerdict::kOtherSurface, Percent(outside) +
                                            " of its surface lies outside of the tube of radius " +
                                            Mm(r) + " that it otherwise is; at most 2 % may");
@@ -179,7 +179,7 @@ MeshTube FindTubeOfMesh(const Mesh& mesh, Parallelism parallelism) {
   TT_CHECK(!pieces.empty());
   const Mesh& body = pieces.front();
   const LocalRadius local = FindLocalRadius(body);
-  if (local.round_share < kLeastRound) {
+  if (local.round_share < kMinRound) {
     return Refusal(MeshVerdict::kNotRound, "only " + Percent(local.round_share) +
                                                " of its surface is round; a tube's is but for its "
                                                "ends");

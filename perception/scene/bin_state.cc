@@ -28,7 +28,7 @@ bool Denied(const std::vector<ViewImage>& views, const Vector3& p_NC, double rad
   for (const Vector3& place : kPlaces) {
     const Vector3 p_N = p_NC + kInside * radius_m * place;
     for (const ViewImage& view : views) {
-      if (LookAt(view, p_N, 0.0, kDeeper_m) == Sight::kSeenThrough) return true;
+      if (QueryVisibility(view, p_N, 0.0, kDeeper_m) == Visibility::kSeenThrough) return true;
     }
   }
   return false;

@@ -7,9 +7,9 @@
 
 namespace tubetwin {
 
-/// Sets `bin_content` and `bin_content_reason` from tubes, unexplained points and what the views
-/// leave open. A tube may hide where a whole one fits on the floor of which no view would see any
-/// part; above other tubes none hides that those do not betray. Cheap unless nothing was seen.
+/// Sets `bin_content` and `bin_content_reason`. The bin is not empty when tubes or unexplained
+/// points are seen. When nothing is seen it counts as empty only if no whole tube could lie on the
+/// floor without any view seeing a part of it. Cheap unless nothing was seen.
 void JudgeBinContent(TubeScene& scene, const std::vector<ViewImage>& views, const Part& part,
                      const Bin& bin);
 

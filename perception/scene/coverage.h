@@ -9,7 +9,7 @@
 
 namespace tubetwin {
 
-/// What the views left open inside the bin.
+/// Which parts of the bin no view saw.
 struct Coverage {
   double unseen_floor_m2 = 0.0;  ///< Floor that no view saw (below tubes included).
   UnseenFloor unseen_floor;      ///< Its cells.

@@ -6,11 +6,11 @@
 
 namespace tubetwin {
 
-/// Many curves made ready for the question how near the nearest of them is, when only near ones
-/// matter. Keeps references to nothing. Thread safe.
+/// Curves prepared for fast queries of the distance to the nearest of them, up to a limit. Keeps
+/// copies. Thread safe.
 class NearLines {
  public:
-  /// Adds a curve; curves are numbered in the order of this call. An empty one is near to nothing.
+  /// Adds a curve; curves are numbered from 0 in the order of these calls. It may be empty.
   void Add(const Polyline& line);
 
   /// Distance of `p` to the nearest curve but those numbered `except_a` and `except_b`, or

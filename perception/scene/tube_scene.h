@@ -74,10 +74,10 @@ struct TubeScene {
   int threads = 1;
 };
 
-/// Under/over runs, classes and the lists of ids, from centerlines alone (`visible` and the
-/// confidences from the tubes' own): a tube is under another
-/// once per run of its samples that the other covers (within r horizontally, more than r above); 0
-/// free, 1 weak, 2 or more strong. Used on perceived and on true tubes alike.
+/// FindCrossings, from centerlines alone: a tube is under another once for each run of its samples
+/// that the other covers (within r horizontally, more than r above). Used on perceived and on true
+/// tubes. AssignClasses fills in the scene's crossings (`visible` and confidence from the tubes'),
+/// lists of ids and classes (under others 0 times: free, once: weak, more often: strong).
 std::vector<Crossing> FindCrossings(const std::vector<Polyline>& lines_N, double radius_m);
 void AssignClasses(TubeScene& scene, double radius_m);
 

@@ -16,7 +16,7 @@
 namespace tubetwin {
 namespace {
 
-constexpr std::size_t kThinnedPoints = 60000;
+constexpr std::size_t kMaxFitPoints = 60000;
 constexpr int kTriples = 400;
 constexpr int kPlanes = 3;  ///< Floor, a table around the bin, one more.
 constexpr double kPlane_m = 0.003;
@@ -40,10 +40,10 @@ std::vector<Vector3> Thinned(const OrganizedCloud& cloud) {
   for (const auto& p : cloud.p_SP) {
     if (IsValid(p)) out.push_back(p.cast<double>());
   }
-  if (out.size() <= kThinnedPoints) return out;
+  if (out.size() <= kMaxFitPoints) return out;
   // By golden-ratio steps, so that no raster's columns are preferred.
-  std::vector<Vector3> thin(kThinnedPoints);
-  for (std::size_t i = 0; i < kThinnedPoints; ++i) {
+  std::vector<Vector3> thin(kMaxFitPoints);
+  for (std::size_t i = 0; i < kMaxFitPoints; ++i) {
     const double share = std::fmod(0.6180339887498949 * static_cast<double>(i), 1.0);
     thin[i] = out[static_cast<std::size_t>(share * static_cast<double>(out.size()))];
   }
@@ -80,7 +80,7 @@ Plane Polished(const Plane& plane, const std::vector<Vector3>& points) {
 std::optional<Plane> BestPlane(const std::vector<Vector3>& points, RandomStream& stream) {
   const auto n = static_cast<std::uint32_t>(points.size());
   std::optional<Plane> best;
-  std::size_t most = 0;
+  std::size_t max_count = 0;
   const std::size_t stride = std::max<std::size_t>(1, points.size() / 4000);
   for (int k = 0; k < kTriples && n >= 3; ++k) {
     const Vector3 &a = points[stream.Index(n)], &b = points[stream.Index(n)],
@@ -92,8 +92,8 @@ std::optional<Plane> BestPlane(const std::vector<Vector3>& points, RandomStream&
     for (std::size_t i = 0; i < points.size(); i += stride) {
       count += std::abs(plane.Height(points[i])) < kPlane_m;
     }
-    if (count > most) {
-      most = count;
+    if (count > max_count) {
+      max_count = count;
       best = plane;
     }
   }
@@ -129,16 +129,16 @@ class Offsets {
   std::pair<double, double> BestPair(double size_m) const {
     const auto apart = static_cast<int>(std::lround(size_m / kBin_m));
     const int n = static_cast<int>(counts_.size());
-    double most = -1.0;
+    double max_sum = -1.0;
     int at = 0;
     for (int i = -apart; i < n; ++i) {
       const double sum = Near(i) + Near(i + apart);
-      if (sum > most) {
-        most = sum;
+      if (sum > max_sum) {
+        max_sum = sum;
         at = i;
       }
     }
-    return {low_ + (at - 0.5) * kBin_m + 0.5 * size_m, most};
+    return {low_ + (at - 0.5) * kBin_m + 0.5 * size_m, max_sum};
   }
 
  private:
@@ -268,14 +268,14 @@ Rectangle OnTheFloorsSide(const Rectangle& r, const SeenSides& sides,
     return first == second ? 0 : (first ? -1 : 1);
   };
   Rectangle best = r;
-  double most = SeenFloor(r, floor, bin, true);
+  double max_seen = SeenFloor(r, floor, bin, true);
   for (const int i : {0, move(0)}) {
     for (const int j : {0, move(2)}) {
       Rectangle moved = r;
       moved.centre += i * bin.size_m[0] * along + j * bin.size_m[1] * across;
       const double seen = SeenFloor(moved, floor, bin, true);
-      if (seen > most) {
-        most = seen;
+      if (seen > max_seen) {
+        max_seen = seen;
         best = moved;
       }
     }

@@ -21,16 +21,16 @@ constexpr double kAligned = 0.95;
 /// correction is still to come, to the last.
 constexpr double kScales_m[] = {0.004, 0.002, 0.001, 0.0005, 0.0005};
 /// Noise of one point. Points of one plane in one view share their errors: together they count as
-/// kMostPerPlane at most, and fewer than kFewestPerPlane are not trusted.
+/// kMaxPerPlane at most, and fewer than kFewestPerPlane are not trusted.
 constexpr double kSigma_m = 0.00015;
-constexpr double kMostPerPlane = 100.0;
+constexpr double kMaxPerPlane = 100.0;
 constexpr std::size_t kFewestPerPlane = 40;
 /// One sigma of what all views share and of what each has besides.
 constexpr double kCommonShift_m = 0.001, kOwnShift_m = 0.0001;
 const double kCommonTurn_rad = Radians(0.15), kOwnTurn_rad = Radians(0.02);
 /// Larger corrections are no calibration's error: something else is wrong.
-constexpr double kMostShift_m = 0.004;
-const double kMostTurn_rad = Radians(0.6);
+constexpr double kMaxShift_m = 0.004;
+const double kMaxTurn_rad = Radians(0.6);
 /// Pixels of a view that are looked at first, and how many points of a plane are plenty.
 constexpr double kSamples = 6000.0;
 constexpr std::size_t kEnough = 800;
@@ -168,7 +168,7 @@ Equations Linearize(const Samples& samples, const RigidTransform& X_NS, const Ve
   for (std::size_t k = 0; k < kPlanes; ++k) {
     const auto& points = samples[k];
     if (points.empty()) continue;
-    const double share = std::min(1.0, kMostPerPlane / static_cast<double>(points.size()));
+    const double share = std::min(1.0, kMaxPerPlane / static_cast<double>(points.size()));
     const Vector3 n_S = X_NS_now.linear().transpose() * planes[k].n_N;
     for (const Vector3& p_S : points) {
       const double residual = planes[k].n_N.dot(X_NS_now * p_S) - planes[k].offset_m;
@@ -259,7 +259,7 @@ Registration RegisterViews(const std::vector<ViewRaster>& views, const Bin& bin,
   for (std::size_t v = 0; v < views.size(); ++v) {
     before += SquaredResiduals(samples[v], views[v].X_NS, planes);
     after += SquaredResiduals(samples[v], views[v].X_NS * Motion(x[v]), planes);
-    plausible &= x[v].head<3>().norm() < kMostShift_m && x[v].tail<3>().norm() < kMostTurn_rad;
+    plausible &= x[v].head<3>().norm() < kMaxShift_m && x[v].tail<3>().norm() < kMaxTurn_rad;
   }
   out.before_m = out.after_m = std::sqrt(before / static_cast<double>(points));
   if (!plausible || after > before) return out;

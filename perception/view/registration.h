@@ -9,25 +9,26 @@
 
 namespace tubetwin {
 
-/// What floor and walls say about the poses that are believed of some views.
+/// How far the believed poses of some views are off, judged by the floor and walls of the bin.
 struct Registration {
-  /// Per view: pose of the true S in the believed one (hand-eye error and the arm's own). Identity
-  /// when the views do not show enough, or show something that no pose error explains.
+  /// Per view: pose of the true S in the believed S (errors of the hand-eye calibration and of the
+  /// arm). Identity when too little of floor and walls is seen, or when no pose error explains it.
   std::vector<RigidTransform> X_SbelievedS;
   double before_m = 0.0;  ///< rms distance of the floor and wall points from floor and walls.
   double after_m = 0.0;   ///< The same with the corrections.
   int points = 0;         ///< Floor and wall points that were used; 0: nothing was corrected.
 };
 
-/// Finds points of the bin's floor and inner walls by place and normal and turns and shifts the
-/// views so that they lie on the known planes: one correction that all views share (the scanner is
-/// bolted to the flange) and a small one of each. Least squares with robust weights and with what a
-/// hand-eye calibration can be off by as prior, so that what nothing shows stays as it was. Results
-/// do not depend on the thread count.
+/// Corrects the poses so that points of the bin's floor and inner walls, found by place and normal,
+/// lie on these known planes. Estimated are one correction that all views share (the scanner is
+/// bolted to the flange) and a small one for each view: least squares with robust weights and, as
+/// prior, the usual errors of a hand-eye calibration, so that a direction that no plane fixes is
+/// left as it was. Results do not depend on the thread count.
 Registration RegisterViews(const std::vector<ViewRaster>& views, const Bin& bin,
                            Parallelism parallelism);
 
-/// What to tell a user whose poses are off by more than a calibrated scanner's; else empty.
+/// A warning for the user when the poses are further off than those of a calibrated scanner; else
+/// empty.
 std::string RegistrationWarning(const Registration& registration);
 
 }  // namespace tubetwin

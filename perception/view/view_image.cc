@@ -12,16 +12,18 @@ constexpr double kInside_m = 0.05;
 
 }  // namespace
 
-Sight LookAt(const ViewImage& view, const Vector3& p_NC, double radius_m, double slack_m) {
-  if (view.width == 0) return Sight::kOutside;
+Visibility QueryVisibility(const ViewImage& view, const Vector3& p_NC, double radius_m,
+                           double slack_m) {
+  if (view.width == 0) return Visibility::kOutside;
   const Vector3 p_SC = view.X_SN * p_NC;
-  if (p_SC.z() < kInside_m) return Sight::kOutside;
+  if (p_SC.z() < kInside_m) return Visibility::kOutside;
   const long column = std::lround(view.fx * p_SC.x() / p_SC.z() + view.cx);
   const long row = std::lround(view.fy * p_SC.y() / p_SC.z() + view.cy);
   if (column < 1 || row < 1 || column + 1 >= view.width || row + 1 >= view.height) {
-    return Sight::kOutside;
+    return Visibility::kOutside;
   }
-  // The nearest return around the cell: an edge beside the place must not deny it.
+  // The nearest depth of the 3 x 3 cells: beside an edge the farther one must not count as seeing
+  // through.
   float z = std::numeric_limits<float>::infinity();
   int returns = 0;
   for (int j = -1; j <= 1; ++j) {
@@ -33,11 +35,11 @@ Sight LookAt(const ViewImage& view, const Vector3& p_NC, double radius_m, double
       z = std::min(z, near);
     }
   }
-  if (returns < 3) return Sight::kUnknown;
+  if (returns < 3) return Visibility::kUnknown;
   const double along = p_SC.z() / p_SC.norm();
   const double surface = p_SC.z() - radius_m * along;
-  if (z > surface + slack_m * along) return Sight::kSeenThrough;
-  return z < surface - slack_m * along ? Sight::kHidden : Sight::kSurface;
+  if (z > surface + slack_m * along) return Visibility::kSeenThrough;
+  return z < surface - slack_m * along ? Visibility::kHidden : Visibility::kSurface;
 }
 
 }  // namespace tubetwin

@@ -9,8 +9,8 @@ namespace tubetwin {
 /// Blocks of ViewRaster on the side of a cell of the depth image.
 inline constexpr int kBlocksPerCell = 2;
 
-/// Depths of one view, for the question what it sees at a place. Columns and rows like the camera
-/// image; frame S, metres.
+/// Depth image of one view, to find out what the view says about a place (QueryVisibility). Columns
+/// and rows as in the camera image; frame S, metres.
 struct ViewImage {
   int width = 0, height = 0;  ///< In cells; 0 when the cloud holds no point.
   double pitch_m = 0.0;       ///< Width of a cell at the median depth.
@@ -28,17 +28,19 @@ struct ViewImage {
   }
 };
 
-/// What a view says about a piece of tube whose axis passes through a point, from least to most.
-enum class Sight {
-  kOutside,      ///< The view does not reach there.
-  kUnknown,      ///< No return there.
-  kHidden,       ///< Something nearer is in the way.
-  kSurface,      ///< A surface lies where the tube's would.
-  kSeenThrough,  ///< The view looks past the place: no tube is there.
+/// What a view says about the claim that a tube's axis passes through a point; the later in this
+/// list, the stronger the statement.
+enum class Visibility {
+  kOutside,      ///< The point is outside of the image.
+  kUnknown,      ///< There are no depths around the point.
+  kHidden,       ///< Something nearer to the scanner occludes the point.
+  kSurface,      ///< A surface is where the tube's surface would be.
+  kSeenThrough,  ///< The view sees something farther away: no tube is there.
 };
 
-/// Looks at the tube axis point `p_NC` from one view. `slack_m`: how much deeper than the tube's
-/// surface the view must see before the tube is denied.
-Sight LookAt(const ViewImage& view, const Vector3& p_NC, double radius_m, double slack_m);
+/// What one view says about a tube of that radius with its axis through `p_NC`. `slack_m`: how far
+/// behind the tube's surface the view must see for kSeenThrough.
+Visibility QueryVisibility(const ViewImage& view, const Vector3& p_NC, double radius_m,
+                           double slack_m);
 
 }  // namespace tubetwin

@@ -92,7 +92,7 @@ double PointPitch(const std::vector<Eigen::Vector3f>& points) {
 /// The pinhole, without pixels, that sees all `points_S` about `pitch_m` apart.
 ViewRaster FrameAround(const std::vector<Eigen::Vector3f>& points_S, double pitch_m) {
   ViewRaster raster;
-  constexpr double kMostPixels = 16e6;  // Coarser beyond, so that memory stays bounded.
+  constexpr double kMaxPixels = 16e6;  // Coarser beyond, so that memory stays bounded.
   Eigen::AlignedBox2f box;
   std::vector<float> depths;
   for (const auto& p : points_S) {
@@ -103,8 +103,7 @@ ViewRaster FrameAround(const std::vector<Eigen::Vector3f>& points_S, double pitc
   const double depth_m = depths[depths.size() / 2];
   const double area_m2 = depth_m * depth_m * box.sizes().cast<double>().prod();
   // A little coarser than the points, so that few pixels between them stay empty.
-  raster.pitch_m =
-      std::max({pitch_m, 1.3 * PointPitch(points_S), std::sqrt(area_m2 / kMostPixels)});
+  raster.pitch_m = std::max({pitch_m, 1.3 * PointPitch(points_S), std::sqrt(area_m2 / kMaxPixels)});
   raster.fx = raster.fy = depth_m / raster.pitch_m;
   raster.cx = 1.0 - box.min().x() * raster.fx;
   raster.cy = 1.0 - box.min().y() * raster.fy;
@@ -139,9 +138,9 @@ ViewRaster SeeAnew(const std::vector<Eigen::Vector3f>& points_S, double pitch_m)
     pixel->sum += p;
     ++pixel->count;
   }
-  raster.seen_anew_S.reserve(pixels.size());
+  raster.projected_S.reserve(pixels.size());
   for (const Pixel& p : pixels) {
-    raster.seen_anew_S.push_back(p.count > 0 ? Eigen::Vector3f(p.sum / static_cast<float>(p.count))
+    raster.projected_S.push_back(p.count > 0 ? Eigen::Vector3f(p.sum / static_cast<float>(p.count))
                                              : InvalidPoint());
   }
   return raster;

@@ -7,10 +7,10 @@
 namespace tubetwin {
 
 void VoxelGrid::Allocate(const Eigen::Array3f& low, const Eigen::Array3f& high) {
-  constexpr float kMostCells = 3e10f;  // 4 GB of bits.
+  constexpr float kMaxCells = 3e10f;  // 4 GB of bits.
   low_ = (low * per_metre_).floor() - static_cast<float>(kMargin);
   const Eigen::Array3f size = (high * per_metre_).floor() - low_ + static_cast<float>(kMargin + 1);
-  TT_CHECK(size.allFinite() && size.prod() < kMostCells);
+  TT_CHECK(size.allFinite() && size.prod() < kMaxCells);
   size_x_ = static_cast<int>(size[0]);
   size_y_ = static_cast<int>(size[1]);
   const std::size_t bits = BitOf(0, 0, static_cast<int>(size[2]));

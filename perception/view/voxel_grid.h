@@ -8,11 +8,12 @@
 
 namespace tubetwin {
 
-/// Occupied cubes of space, numbered from 0 in raster order (z slowest, x fastest): one bit per
-/// cube of the box around all, and how many are occupied before each word of 64.
+/// Occupied cells of a grid of cubes, numbered from 0 in raster order (z slowest, x fastest).
+/// Stores one bit for each cell of the box around all points, and for each word of 64 bits how many
+/// cells are occupied before it.
 class VoxelGrid {
  public:
-  /// Cells on every side of the box that may be asked for and are never occupied.
+  /// Cells around the box that are never occupied, so that neighbours need no test for its limits.
   static constexpr int kMargin = 4;
 
   /// Occupies the cell of each point of `points`: edge `cell_m`, corners at its multiples. `at`

@@ -43,7 +43,7 @@ std::vector<SurfacePoint> PointsOf(const OrganizedCloud& cloud, double radius_m,
   ViewImage image = MakeEmptyImage(raster);
   std::vector<SurfacePoint> out;
   for (int band = 0; band * kRowsPerBand < raster.block_rows(); ++band) {
-    const auto part = LookAtBand(raster, Foreground(WideBin(), 0.3), radius_m, band, image);
+    const auto part = ExtractSurfaceBand(raster, Foreground(WideBin(), 0.3), radius_m, band, image);
     out.insert(out.end(), part.points.begin(), part.points.end());
   }
   if (depths != nullptr) *depths = image;

@@ -29,7 +29,7 @@ Fragment Piece(const Vector3& from, const Vector3& to) {
 /// Bridges of fragments that no view looks at: shape and bin alone decide.
 struct Unseen {
   explicit Unseen(std::vector<Fragment> pieces) : fragments(std::move(pieces)) {
-    const HiddenSpace space(views, bin, kRadius);
+    const OccludedSpace space(views, bin, kRadius);
     bridges = FindBridges(fragments, space, 0.3);
   }
   std::vector<Chain> Join(double tube_length_m) const {
@@ -142,16 +142,16 @@ TEST_CASE("The chosen chains cost as little as the best of all sets, margins are
       pieces.push_back(Piece(from, from + Vector3(stream.Uniform(0.02, 0.2), 0, 0)));
     }
     std::vector<Bridge> bridges;
-    std::vector<double> rooms_m;
+    std::vector<double> max_extensions_m;
     for (int a = 0; a < 2 * count; ++a) {
-      rooms_m.push_back(stream.Uniform() < 0.5 ? 0.0 : stream.Uniform(0.0, 0.2));
+      max_extensions_m.push_back(stream.Uniform() < 0.5 ? 0.0 : stream.Uniform(0.0, 0.2));
       for (int b = a + 1; b < 2 * count; ++b) {
         if (a / 2 == b / 2 || stream.Uniform() < 0.4) continue;
         bridges.push_back({a, b, {}, stream.Uniform(0.02, 0.1), stream.Uniform(-5.0, 6.0)});
       }
     }
-    const auto all = FindChains(pieces, bridges, rooms_m, 0.4);
-    const auto chosen = JoinFragments(pieces, bridges, rooms_m, 0.4);
+    const auto all = FindChains(pieces, bridges, max_extensions_m, 0.4);
+    const auto chosen = JoinFragments(pieces, bridges, max_extensions_m, 0.4);
     std::vector<char> covered(pieces.size(), 0);
     double cost = 0.0;
     std::multiset<int> members;
@@ -167,7 +167,7 @@ TEST_CASE("The chosen chains cost as little as the best of all sets, margins are
       const auto same = std::find_if(all.begin(), all.end(),
                                      [&](const Chain& c) { return c.ends == chain.ends; });
       const double without = BestOfAll(all, covered, static_cast<int>(same - all.begin()));
-      CHECK(chain.margin == Approx(std::min(kMostMargin, without - best)).margin(1e-9));
+      CHECK(chain.margin == Approx(std::min(kMaxMargin, without - best)).margin(1e-9));
     }
   }
 }

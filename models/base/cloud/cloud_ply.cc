@@ -199,12 +199,13 @@ void RequireVertex(const CloudFile& file, const PlyHeader& header) {
   // What the header claims against what the file holds, before anything is allocated. In text, a
   // number and what separates it from the next take at least two bytes.
   const std::uint64_t left = file.size() - file.position();
-  const std::uint64_t least = header.binary ? vertex->record_size : 2 * vertex->properties.size();
-  if (static_cast<std::uint64_t>(vertex->count) > (left + 1) / least) {
+  const std::uint64_t min_bytes =
+      header.binary ? vertex->record_size : 2 * vertex->properties.size();
+  if (static_cast<std::uint64_t>(vertex->count) > (left + 1) / min_bytes) {
     file.FailByte(file.position(), "count of element 'vertex' is " + std::to_string(vertex->count) +
                                        ", the " + std::to_string(left) +
                                        " bytes of data that follow hold at most " +
-                                       std::to_string((left + 1) / least));
+                                       std::to_string((left + 1) / min_bytes));
   }
 }
 
