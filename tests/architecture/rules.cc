@@ -31,6 +31,7 @@ const std::map<std::string, std::vector<std::string>>& Rooms() {
       {"perception/part_import", {"perception/fragment"}},
       {"perception/leao2020", {"perception/fragment", "perception/scene"}},
       {"perception", {"perception/joining", "perception/leao2020"}},
+      {"planner/scene_query", {"perception/scene"}},
       {"planner/extraction", {"planner/scene_query"}},
       {"planner/grasp", {"planner/extraction"}},
       {"planner/motion", {"hw_bridge/cell", "models"}},
