@@ -8,6 +8,7 @@
 #include "models/base/files.h"
 #include "models/base/text.h"
 #include "tests/architecture/rules.h"
+#include "tests/architecture/size_rules.h"
 #include "tests/architecture/tree.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
@@ -63,7 +64,26 @@ TEST_CASE("third-party headers appear only where they may") {
   CheckNone(CheckThirdParty(Sources()));
 }
 
-TEST_CASE("files stay short or argue why not") { CheckNone(CheckSizes(Sources())); }
+TEST_CASE("files stay short or argue why not") { CheckNone(CheckFileSizes(Sources())); }
+
+TEST_CASE("functions stay short or argue why not", "[!mayfail]") {
+  CheckNone(CheckFunctionSizes(Sources()));
+}
+
+TEST_CASE("no folder holds more sources than one can know", "[!mayfail]") {
+  CheckNone(CheckFolderSizes(Sources()));
+}
+
+TEST_CASE("every room says on a screen what it is", "[!mayfail]") {
+  constexpr int kScreen = 60;
+  std::vector<std::string> breaks;
+  for (const std::string& room : RoomNames()) {
+    for (std::string& line : CheckReadme(kTop, room, kScreen)) breaks.push_back(std::move(line));
+  }
+  CheckNone(breaks);
+}
+
+TEST_CASE("the front page stays a page") { CheckNone(CheckReadme(kTop, "", 90)); }
 
 TEST_CASE("the top of the tree holds the agreed files and rooms and nothing else") {
   const std::vector<std::string> allowed = {".ci",
@@ -73,6 +93,7 @@ TEST_CASE("the top of the tree holds the agreed files and rooms and nothing else
                                             "CHANGELOG.md",
                                             "CMakeLists.txt",
                                             "CMakePresets.json",
+                                            "CONTRIBUTING.md",
                                             "LICENSE",
                                             "README.md",
                                             "dev",
@@ -221,11 +242,39 @@ TEST_CASE("each rule finds what breaks it") {
             {ParseSource("twin/round/scoring.h", "#include \"twin/cell/truth.h\"\n"),
              ParseSource("twin/app/a.cc", "#include \"twin/round/scoring.h\"\n")})
             .size() == 1);
+  CHECK(CheckForbiddenWords("a", std::string("x\n/wo") + "rk/y").at(0).rfind("a:2 ", 0) == 0);
+}
+
+TEST_CASE("each rule of sizes finds what breaks it") {
   std::string lines;
   for (int i = 0; i < 401; ++i) lines += "\n";
-  CHECK(CheckSizes(One("models/a.cc", lines)).size() == 1);
-  CHECK(CheckSizes(One("models/a.cc", "// Long file: a table of one device.\n" + lines)).empty());
-  CHECK(CheckForbiddenWords("a", std::string("x\n/wo") + "rk/y").at(0).rfind("a:2 ", 0) == 0);
+  CHECK(CheckFileSizes(One("models/a.cc", lines)).size() == 1);
+  CHECK(
+      CheckFileSizes(One("models/a.cc", "// Long file: a table of one device.\n" + lines)).empty());
+
+  std::string body;
+  for (int i = 0; i < 59; ++i) body += "    x = 1;\n";
+  const std::string in_class =
+      "struct A {\n  void F(int a,\n         int b) {\n" + body + "  }\n};\n";
+  CHECK(CheckFunctionSizes(One("models/a.h", in_class)) ==
+        std::vector<std::string>{
+            "models/a.h:2 begins a function of 62 lines; split it by named steps, or argue in "
+            "a comment \"Long function: REASON\""});
+  CHECK(CheckFunctionSizes(One("models/a.cc", "void F() {\n" + body + "}\n")).size() == 1);
+  CHECK(CheckFunctionSizes(One("models/a.cc", "void F() {\n  if (a) {\n  }\n}\nint b;\n" + body))
+            .empty());
+  CHECK(
+      CheckFunctionSizes(
+          One("models/a.cc",
+              "// Long function: one line for each key of the file.\nvoid F() {\n" + body + "}\n"))
+          .empty());
+
+  std::vector<SourceFile> files;
+  for (int i = 0; i < 26; ++i)
+    files.push_back(ParseSource("models/a" + std::to_string(i) + ".cc", ""));
+  CHECK(CheckFolderSizes(files).size() == 1);
+  files.pop_back();
+  CHECK(CheckFolderSizes(files).empty());
 }
 
 }  // namespace tubetwin::architecture

@@ -226,23 +226,10 @@ std::vector<std::string> CheckThirdParty(const std::vector<SourceFile>& files) {
   return breaks;
 }
 
-std::vector<std::string> CheckSizes(const std::vector<SourceFile>& files) {
-  constexpr std::size_t kMaxLines = 400;
-  constexpr std::size_t kHead = 60;
-  std::vector<std::string> breaks;
-  for (const SourceFile& file : files) {
-    if (file.lines.size() <= kMaxLines) continue;
-    const auto head_end = file.lines.begin() + kHead;
-    const bool argued = std::any_of(file.lines.begin(), head_end, [](const std::string& line) {
-      const std::size_t at = line.find("// Long file: ");
-      return at != std::string::npos && line.size() > at + 30;  // A reason, not just the words.
-    });
-    if (!argued) {
-      breaks.push_back(file.path + " has " + std::to_string(file.lines.size()) +
-                       " lines; split it, or argue in a line \"Long file: REASON\" at its head");
-    }
-  }
-  return breaks;
+std::vector<std::string> RoomNames() {
+  std::vector<std::string> names;
+  for (const auto& [room, may_include] : Rooms()) names.push_back(room);
+  return names;
 }
 
 std::vector<std::string> CheckForbiddenWords(const std::string& path, const std::string& text) {

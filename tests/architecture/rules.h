@@ -26,8 +26,8 @@ std::vector<std::string> CheckTruthStaysInCampaign(const std::vector<SourceFile>
 /// unknown third-party header is a break too.
 std::vector<std::string> CheckThirdParty(const std::vector<SourceFile>& files);
 
-/// At most 400 lines, or a line "Long file: REASON" among the first 60.
-std::vector<std::string> CheckSizes(const std::vector<SourceFile>& files);
+/// Every room, for what holds for each.
+std::vector<std::string> RoomNames();
 
 /// Nothing in a source, build or text file names a place of one machine.
 std::vector<std::string> CheckForbiddenWords(const std::string& path, const std::string& text);
