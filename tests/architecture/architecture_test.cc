@@ -161,7 +161,8 @@ TEST_CASE("every library that the build looks for is in a package that ./dev ins
       {"fcl", "libfcl-dev"},       {"zstd", "libzstd-dev"},
       {"assimp", "libassimp-dev"}, {"Boost", "libboost-dev"},
       {"spdlog", "libspdlog-dev"}, {"benchmark", "libbenchmark-dev"},
-      {"PCL", "libpcl-dev"},       {"orocos_kdl", "liborocos-kdl-dev"}};
+      {"PCL", "libpcl-dev"},       {"orocos_kdl", "liborocos-kdl-dev"},
+      {"tubetwin", "cmake"}};  // Of itself, in the test of its installation.
   const std::string dev = ReadFile(kTop + "/dev");
   const std::size_t begin = dev.find("kBuildPackages=(");
   REQUIRE(begin != std::string::npos);
