@@ -7,8 +7,8 @@
 namespace tubetwin::test {
 
 FakeCell::FakeCell()
-    : cell{clock,  arm,          gripper, wrist,          scanner,
-           Hc10(), CellLayout(), Bin(),   SafetyLimits(), false} {
+    : cell{clock,     arm,          gripper, wrist,          scanner,
+           arm_model, CellLayout(), Bin(),   SafetyLimits(), false} {
   arm.q << 0, 0.3, 1.5, 0, -1.2, 0;
 }
 
@@ -51,6 +51,7 @@ CommandResult FakeCell::FakeArm::Start(const CheckedTrajectory& trajectory) {
   progress_s_ = 0.0;
   moving_ = true;
   done_ = false;
+  if (on_start) on_start(trajectory);
   return {};
 }
 
@@ -63,6 +64,7 @@ void FakeCell::FakeArm::Stop(StopKind kind) {
 
 CommandResult FakeCell::FakeArm::Recover() {
   ++recovered;
+  if (!recovers) return {};
   mode = ArmMode::kReady;
   fault.clear();
   return {};
@@ -72,6 +74,7 @@ void FakeCell::FakeGripper::Command(const GripperCommand& command) {
   ++commands;
   state.opening_m = state.requested_m = command.opening_m;
   state.object = GripperObject::kAtPosition;
+  if (on_command) on_command(command);
 }
 
 GripperState FakeCell::FakeGripper::State() const {
@@ -83,7 +86,7 @@ GripperState FakeCell::FakeGripper::State() const {
 
 WrenchSample FakeCell::FakeWrist::Read() const {
   if (!silent) newest_ = clock_.Now();
-  return {newest_, load_K, saturated};
+  return {newest_, weigh ? weigh() : load_K, saturated};
 }
 
 CommandResult FakeCell::FakeScanner::Trigger() {
@@ -95,7 +98,7 @@ CommandResult FakeCell::FakeScanner::Trigger() {
 
 OrganizedCloud FakeCell::FakeScanner::Take() {
   status_ = ScanStatus::kIdle;
-  return {};
+  return look ? look() : OrganizedCloud();
 }
 
 CheckedTrajectory FakeCell::Move(double angle_rad, double duration_s) const {
@@ -104,7 +107,7 @@ CheckedTrajectory FakeCell::Move(double angle_rad, double duration_s) const {
   trajectory.points[0].q = arm.State().q;
   trajectory.points[1].q = arm.State().q + angle_rad * JointVector::Ones();
   trajectory.points[1].time_s = duration_s;
-  const auto checked = CheckTrajectory(Hc10(), trajectory);
+  const auto checked = CheckTrajectory(arm_model, trajectory);
   if (const auto* rejected = std::get_if<TrajectoryRejection>(&checked)) FAIL(rejected->reason);
   return std::get<CheckedTrajectory>(checked);
 }

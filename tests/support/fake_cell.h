@@ -8,10 +8,14 @@
 namespace tubetwin::test {
 
 /// A cell whose devices do exactly what a test tells them, on a clock that only counts: the arm is
-/// where its trajectory says, the gripper arrives at once, the wrist weighs nothing.
+/// where its trajectory says, the gripper arrives at once, the wrist weighs nothing. What a command
+/// brings about in the world is the test's to say, through the functions that the devices call
+/// (FakeWorld does so for a bin of tubes).
 class FakeCell {
  public:
   FakeCell();
+  FakeCell(const FakeCell&) = delete;
+  FakeCell& operator=(const FakeCell&) = delete;
 
   class Clock : public CellClock {
    public:
@@ -30,18 +34,21 @@ class FakeCell {
     CommandResult Start(const CheckedTrajectory& trajectory) override;
     CommandResult Append(const CheckedTrajectory&) override { return {}; }
     void Stop(StopKind kind) override;
-    void SetPayload(double, const Vector3&) override {}
+    void SetPayload(double mass_kg, const Vector3&) override { payload_kg = mass_kg; }
     CommandResult Recover() override;
+    std::function<void(const CheckedTrajectory&)> on_start;  ///< Called when a motion has begun.
 
     JointVector q = JointVector::Zero();       ///< Where it stands.
     JointVector offset = JointVector::Zero();  ///< Of what it reports while it moves.
     ArmMode mode = ArmMode::kReady;            ///< Set by a test: stops the motion.
     std::string fault;
-    bool silent = false;  ///< The state's time stands still.
-    bool stuck = false;   ///< Progress stands still.
+    bool silent = false;   ///< The state's time stands still.
+    bool stuck = false;    ///< Progress stands still.
+    bool recovers = true;  ///< Recover makes it ready.
     int started = 0, stopped = 0, recovered = 0;
     StopKind last_stop = StopKind::kOnPath;
     double last_planned_s = 0.0;
+    double payload_kg = 0.0;
 
    private:
     void Update() const;
@@ -57,6 +64,7 @@ class FakeCell {
     explicit FakeGripper(const Clock& clock) : clock_(clock) {}
     void Command(const GripperCommand& command) override;
     GripperState State() const override;
+    std::function<void(const GripperCommand&)> on_command;  ///< Called after `state` was set.
     GripperState state;
     bool silent = false;
     int commands = 0;
@@ -71,6 +79,7 @@ class FakeCell {
     explicit FakeWrist(const Clock& clock) : clock_(clock) {}
     WrenchSample Read() const override;
     Wrench load_K;
+    std::function<Wrench()> weigh;  ///< In place of load_K.
     bool silent = false, saturated = false;
 
    private:
@@ -84,13 +93,16 @@ class FakeCell {
     ScanStatus Status() const override { return status_; }
     OrganizedCloud Take() override;
     std::string FailureReason() const override { return "told to fail"; }
-    int failures = 0;  ///< The next scans fail.
+    std::function<OrganizedCloud()> look;  ///< What a scan shows; an empty cloud without it.
+    int failures = 0;                      ///< The next scans fail.
     int triggered = 0;
 
    private:
     ScanStatus status_ = ScanStatus::kIdle;
   };
 
+  /// May be narrowed by a test: what the planner then refuses is refused for a real reason.
+  ArmModel arm_model = Hc10();
   Clock clock;
   FakeArm arm{clock};
   FakeGripper gripper{clock};
