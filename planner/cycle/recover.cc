@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "planner/cycle/round_steps.h"
+#include "planner/pick/tool_path.h"
 
 namespace tubetwin {
 namespace {
@@ -34,6 +35,10 @@ PickPath LoweringPath(const CycleContext& c, bool over_middle) {
   const double floor_B = bin.X_BN.translation().z();
   RigidTransform X_BE = c.executor.X_BE();
   PathBuilder path = c.Path();
+  if (!PointsDown(X_BE)) {
+    X_BE = Upright(X_BE);
+    path.Line("upright", To(X_BE));
+  }
   if (over_middle) {
     X_BE.translation().head<2>() = bin.X_BN.translation().head<2>();
     X_BE = AtHeight(X_BE, floor_B + c.cell.layout.carry_height_m);
@@ -64,7 +69,7 @@ StepOutcome RetreatAndPutBack(CycleContext& c) {
   const GripperState& fingers = c.executor.fingers();
   const bool closed = fingers.object == GripperObject::kContactClosing;
   if (!closed || fingers.opening_m < kNothingOpening_m) return {};
-  RigidTransform over = c.executor.X_BE();
+  RigidTransform over = Upright(c.executor.X_BE());
   over.translation().head<2>() = c.cell.bin.X_BN.translation().head<2>();
   PathBuilder back = c.Path();
   back.Add("over the bin after a stop", slow, Transfer{over});

@@ -308,7 +308,7 @@ std::optional<RoundReport> Round::AfterRefusal(const StepOutcome& refused) {
     if (!back.ok()) return AfterTrouble(back);
   }
   EndAttempt(held ? AttemptOutcome::kPutBack : AttemptOutcome::kNothingHeld, refused.reason);
-  if (refusals_ > kMaxRefusals || first_count_ < 0) {
+  if (refusals_ > kMaxRefusals || (!held && first_count_ < 0)) {
     return End(RoundEnd::kNoPlan, "a motion was refused: " + refused.reason);
   }
   return std::nullopt;

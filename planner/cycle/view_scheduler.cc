@@ -89,7 +89,7 @@ StepOutcome ViewScheduler::GoTo(std::size_t view, bool first) {
             : MotionOptions();
   PathBuilder path = context_.Path();
   path.Add("to view " + std::to_string(view + 1), options,
-           Transfer{poses_BS_[view] * X_SE, /*either_yaw=*/true, /*direct=*/!first});
+           Transfer{poses_BS_[view] * X_SE, /*direct=*/!first});
   return context_.CheckAndRun(path.path());
 }
 

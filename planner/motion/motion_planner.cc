@@ -126,10 +126,6 @@ class Chain {
   MotionRejection rejection_;
 };
 
-RigidTransform Turned(const RigidTransform& X_BE) {
-  return X_BE * MakeTransform(RotZ(kPi), Vector3::Zero());
-}
-
 RigidTransform AtHeight(RigidTransform X_BE, double z_m) {
   X_BE.translation().z() = z_m;
   return X_BE;
@@ -170,24 +166,9 @@ std::optional<JointVector> MotionPlanner::Reach(const RigidTransform& X_BE,
 MotionResult MotionPlanner::PlanLine(const JointVector& q_start, const RigidTransform& X_BE_goal,
                                      const MotionOptions& options) const {
   const FollowContext context{arm_, layout_.X_FE, clearance_, options};
-  std::vector<RigidTransform> goals = {X_BE_goal};
-  if (options.either_yaw) {
-    goals.push_back(Turned(X_BE_goal));
-    const Matrix3 R_EB = PoseOfE(q_start).linear().transpose();
-    const auto angle = [&](const RigidTransform& X_BE) {
-      return Eigen::AngleAxisd(Matrix3(R_EB * X_BE.linear())).angle();
-    };
-    if (angle(goals[1]) < angle(goals[0])) std::swap(goals[0], goals[1]);
-  }
-  std::optional<MotionResult> first;
-  for (const RigidTransform& goal : goals) {
-    Chain chain(arm_, q_start, 1);
-    chain.Add(LineSegmentTo(context, q_start, goal));
-    MotionResult result = chain.Take();
-    if (std::holds_alternative<CheckedTrajectory>(result)) return result;
-    if (!first) first = std::move(result);
-  }
-  return *std::move(first);
+  Chain chain(arm_, q_start, 1);
+  chain.Add(LineSegmentTo(context, q_start, X_BE_goal));
+  return chain.Take();
 }
 
 MotionResult MotionPlanner::PlanPolyline(const JointVector& q_start,
@@ -225,32 +206,21 @@ MotionResult MotionPlanner::PlanTransfer(const JointVector& q_start,
   const RigidTransform X_BE_start = PoseOfE(q_start);
   const double travel_z_m =
       bin_.X_BN.translation().z() + options.travel_height_m.value_or(layout_.carry_height_m);
-  std::vector<RigidTransform> goals = {X_BE_goal};
-  if (options.either_yaw) goals.push_back(Turned(X_BE_goal));
   std::optional<MotionResult> first;
   for (int raise = 0; raise <= kRaises; ++raise) {
     const double z_m = travel_z_m + raise * kRaise_m;
     const double start_z_m = std::max(z_m, X_BE_start.translation().z());
     const double above_z_m = std::max(z_m, X_BE_goal.translation().z());
-    // Nearest in joints first.
-    std::vector<std::pair<double, RigidTransform>> ways;
-    for (const RigidTransform& goal : goals) {
-      const auto q = Reach(AtHeight(goal, above_z_m), q_start[5]);
-      if (q) ways.emplace_back((*q - q_start).cwiseAbs().maxCoeff(), goal);
-    }
-    std::stable_sort(ways.begin(), ways.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (const auto& [distance, goal] : ways) {
-      const JointVector q_above = *Reach(AtHeight(goal, above_z_m), q_start[5]);
-      Chain chain(arm_, q_start, 3);
-      const bool done =
-          chain.Add(LineSegmentTo(context, chain.q(), AtHeight(X_BE_start, start_z_m))) &&
-          chain.Add(JointSegment(context, chain.q(), q_above)) &&
-          chain.Add(LineSegmentTo(context, chain.q(), goal));
-      MotionResult result = chain.Take();
-      if (done) return result;
-      if (!first) first = std::move(result);
-    }
+    const auto q_above = Reach(AtHeight(X_BE_goal, above_z_m), q_start[5]);
+    if (!q_above) continue;
+    Chain chain(arm_, q_start, 3);
+    const bool done =
+        chain.Add(LineSegmentTo(context, chain.q(), AtHeight(X_BE_start, start_z_m))) &&
+        chain.Add(JointSegment(context, chain.q(), *q_above)) &&
+        chain.Add(LineSegmentTo(context, chain.q(), X_BE_goal));
+    MotionResult result = chain.Take();
+    if (done) return result;
+    if (!first) first = std::move(result);
   }
   if (!first) {
     return MotionRejection{Why::kUnreachable, "no joints put the tool above the goal", 0.34, -1};

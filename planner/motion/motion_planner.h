@@ -44,9 +44,6 @@ struct MotionOptions {
   double finger_clearance_m = 0.005;
   double joint_margin_rad = 0.035;  ///< Kept to every joint limit (2 degrees).
   double manipulability = 0.02;     ///< Least one on the way of lines and tilts (models/arm/arm.h).
-  /// The goal may be reached turned by 180 degrees about the tool as well (parallel jaws): the
-  /// nearer one whose path is free is taken.
-  bool either_yaw = false;
   /// Transfers only: height of E over the bin floor while travelling; the layout's carry height
   /// when not given.
   std::optional<double> travel_height_m;

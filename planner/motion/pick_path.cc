@@ -20,8 +20,7 @@ std::vector<RigidTransform> Resolved(const std::vector<PathGoal>& goals,
 }
 
 MotionResult PlanTransferSegment(const MotionPlanner& planner, const Transfer& transfer,
-                                 MotionOptions options, const PathStart& start) {
-  options.either_yaw = transfer.either_yaw;
+                                 const MotionOptions& options, const PathStart& start) {
   if (transfer.direct) {
     if (const auto q_goal = planner.Reach(transfer.X_BE, start.q[5])) {
       MotionResult direct = planner.PlanJoint(start.q, *q_goal, options);

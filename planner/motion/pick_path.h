@@ -34,8 +34,7 @@ PathGoal To(const RigidTransform& X_BE);
 /// From anywhere to anywhere by MotionPlanner::PlanTransfer.
 struct Transfer {
   RigidTransform X_BE = RigidTransform::Identity();
-  bool either_yaw = false;  ///< The goal turned by half a turn about the tool will do as well.
-  bool direct = false;      ///< All joints straight to the goal where that is free.
+  bool direct = false;  ///< All joints straight to the goal where that is free.
 };
 /// E along straight lines through all goals, standing still at each. Relative goals count from the
 /// segment's start, not from the goal before.

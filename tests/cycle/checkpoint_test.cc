@@ -23,7 +23,7 @@ std::string Text(const AttemptCheckpoint& state) {
 
 AttemptCheckpoint ThroughJson(const AttemptCheckpoint& state) {
   const Json json = Json::parse(ToJson(state).dump());
-  return HeldStateFromJson(JsonView(json, "checkpoint"));
+  return AttemptCheckpointFromJson(JsonView(json, "checkpoint"));
 }
 
 /// What a strategy is helped by: where a tube falls, if any does.
@@ -50,7 +50,7 @@ std::vector<Course> Courses() {
 /// All of a report that does not depend on how fast this computer is.
 std::string Text(const AttemptReport& report) {
   std::string out = std::string(ToString(report.outcome)) + ", " + report.reason + ", attempt " +
-                    std::to_string(report.attempt) + ", strategy " + ToString(report.strategy) +
+                    std::to_string(report.attempt) + ", strategy " + report.strategy +
                     (report.resolution_used ? " used" : "");
   if (report.resolution_outcome) out += std::string(", ") + ToString(*report.resolution_outcome);
   for (const double number :
@@ -63,7 +63,8 @@ std::string Text(const AttemptReport& report) {
 
 TEST_CASE("A stored attempt goes on as if it had never been stored, with every strategy",
           "[unit]") {
-  for (const std::string& strategy : ResolutionStrategyNames()) {
+  for (const ResolutionStrategy& each : ResolutionStrategies()) {
+    const std::string& strategy = each.name;
     for (const Course& course : Courses()) {
       CAPTURE(strategy, course.name);
       // Without a break.
@@ -225,7 +226,8 @@ TEST_CASE("A checkpoint that lacks something is refused by the name of what is m
     CAPTURE(key);
     Json torn = whole;
     torn.erase(key);
-    CHECK_THROWS_WITH(HeldStateFromJson(JsonView(torn, "checkpoint")), Catch::Contains(key));
+    CHECK_THROWS_WITH(AttemptCheckpointFromJson(JsonView(torn, "checkpoint")),
+                      Catch::Contains(key));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "planner/pick/tool_path.h"
 #include "tests/support/catch.h"
 #include "tests/support/fake_round.h"
+#include "tests/support/planning.h"
 
 namespace tubetwin {
 namespace {
@@ -34,9 +35,13 @@ std::vector<Polyline> Pile(RandomStream& stream, int count) {
 
 std::optional<std::string> Any(const Grasp&, const CandidateMotion&) { return std::nullopt; }
 
-PlanResult PlanOf(const TubeScene& scene) {
-  return PlanPicks(scene, {}, FakeWorld::ShortTube(), FakeWorld::SmallBin(), PlannerConfig(),
-                   FakeRound::Harmless, Any);
+PlanResult PlanOf(const TubeScene& scene, const PlannerConfig& config = {}) {
+  const std::vector<Vector3> no_points;
+  const Part part = FakeWorld::ShortTube();
+  const Bin bin = FakeWorld::SmallBin();
+  return PlanPicks(
+      {scene, no_points, part, bin, FirstGripper(), config, ExtractionMotionsOf(config)},
+      FakeRound::Harmless, Any);
 }
 
 TEST_CASE("A plan does not change with the order in which perception lists the tubes", "[unit]") {
@@ -150,8 +155,7 @@ TEST_CASE("No motion that is offered takes its tube through the walls", "[unit]"
     const TubeScene scene = PerfectScene(Pile(stream, 5), kRadius);
     PlannerConfig config;
     config.exclude_free = true;  // Only covered tubes are slid.
-    const PlanResult result =
-        PlanPicks(scene, {}, FakeWorld::ShortTube(), bin, config, FakeRound::Harmless, Any);
+    const PlanResult result = PlanOf(scene, config);
     for (const CandidateMotion& motion : result.candidates) {
       if (motion.turns()) continue;  // Tips turn tubes over the walls.
       CAPTURE(motion.name, motion.tube);

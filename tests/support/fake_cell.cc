@@ -34,7 +34,7 @@ ArmState FakeCell::FakeArm::State() const {
   state.time = newest_;
   state.mode = moving_ ? ArmMode::kMoving : mode;
   state.q = trajectory_.points.empty() ? q : Sample(trajectory_, progress_s_).q;
-  if (moving_) state.q += offset;
+  state.q += moving_ ? offset : pushed;
   state.progress_s = progress_s_;
   state.planned_s = trajectory_.duration_s();
   state.done = done_;

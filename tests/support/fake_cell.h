@@ -40,6 +40,7 @@ class FakeCell {
 
     JointVector q = JointVector::Zero();       ///< Where it stands.
     JointVector offset = JointVector::Zero();  ///< Of what it reports while it moves.
+    JointVector pushed = JointVector::Zero();  ///< Of what it reports at rest.
     ArmMode mode = ArmMode::kReady;            ///< Set by a test: stops the motion.
     std::string fault;
     bool silent = false;   ///< The state's time stands still.
