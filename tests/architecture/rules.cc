@@ -41,11 +41,15 @@ const std::map<std::string, std::vector<std::string>>& Rooms() {
       {"planner/evaluator", {"scenes", "planner/pick"}},
       {"twin/render", {"scenes", "models"}},
       {"twin/cell", {"twin/render", "scenes", "hw_bridge/cell"}},
-      {"twin/campaign",
-       {"twin/cell", "twin/render", "planner/evaluator", "planner/cycle", "perception", "scenes",
-        "hw_bridge/recording", "hw_bridge/drivers"}},
-      {"twin/live", {"twin/campaign", "hw_bridge/drivers", "hw_bridge/emulators"}},
-      {"twin/app", {"twin/live", "twin/campaign", "perception/part_import", "hw_bridge/mcap"}},
+      {"twin/statistics", {"models/base"}},
+      {"twin/round",
+       {"twin/cell", "twin/render", "twin/statistics", "planner/evaluator", "planner/cycle",
+        "perception", "scenes", "hw_bridge/recording", "hw_bridge/drivers"}},
+      {"twin/campaign", {"twin/round", "twin/statistics"}},
+      {"twin/study", {"twin/campaign", "twin/round", "twin/statistics"}},
+      {"twin/report", {"twin/study", "twin/campaign", "twin/round", "twin/statistics"}},
+      {"twin/live", {"twin/round", "hw_bridge/drivers", "hw_bridge/emulators"}},
+      {"twin/app", {"twin/live", "twin/report", "perception/part_import", "hw_bridge/mcap"}},
   };
   return rooms;
 }
@@ -83,8 +87,7 @@ const std::vector<ThirdParty>& ThirdParties() {
                                                     "twin/live", "tests"};
   static const std::vector<ThirdParty> list = {
       {"mujoco/",
-       {"scenes/engine", "scenes", "planner/evaluator", "twin/render", "twin/cell", "twin/campaign",
-        "twin/app", "tests"}},
+       {"scenes/engine", "scenes", "planner/evaluator", "twin/render", "twin/cell", "tests"}},
       {"pcl/", {"perception/leao2020", "tests"}, true},
       {"ode/", {"tests"}, true},
       {"fcl/", {"models"}, true},
@@ -106,7 +109,7 @@ const std::vector<ThirdParty>& ThirdParties() {
       {"arpa/", kSockets, true},
       {"netdb.h", kSockets, true},
       {"Random123/", {"models/base", "tests"}, true},
-      {"boost/", {"models/base", "twin/campaign", "tests"}, true},
+      {"boost/", {"models/base", "twin/statistics", "tests"}, true},
       // Recordings of devices and of pictures.
       {"zstd.h", {"hw_bridge/recording", "twin/render"}, true},
       {"catch2/", {"tests"}},
@@ -130,10 +133,6 @@ bool IsAllowedEverywhere(const std::string& include) {
 }  // namespace
 
 std::string RoomOf(const std::string& path) {
-  // One room still, in five folders.
-  for (const char* folder : {"twin/round/", "twin/statistics/", "twin/study/", "twin/report/"}) {
-    if (StartsWith(path, folder)) return "twin/campaign";
-  }
   std::string best;
   for (const auto& [room, may_include] : Rooms()) {
     if (StartsWith(path, room + "/") && room.size() > best.size()) best = room;
@@ -174,15 +173,15 @@ std::vector<std::string> CheckNoCycles() {
   return breaks;
 }
 
-std::vector<std::string> CheckTruthStaysInCampaign(const std::vector<SourceFile>& files) {
+std::vector<std::string> CheckTruthStaysInRound(const std::vector<SourceFile>& files) {
   const std::string kTruth = "twin/cell/truth.h";
   const auto includes = [](const SourceFile& file, const std::string& header) {
     return std::count(file.quoted.begin(), file.quoted.end(), header) > 0;
   };
-  // Truth, and the campaign's own headers that hand it on.
+  // Truth, and the round's own headers that hand it on.
   std::vector<std::string> telling = {kTruth};
   for (const SourceFile& file : files) {
-    if (RoomOf(file.path) == "twin/campaign" && IsHeader(file.path) && includes(file, kTruth)) {
+    if (RoomOf(file.path) == "twin/round" && IsHeader(file.path) && includes(file, kTruth)) {
       telling.push_back(file.path);
     }
   }
@@ -190,13 +189,13 @@ std::vector<std::string> CheckTruthStaysInCampaign(const std::vector<SourceFile>
   for (const SourceFile& file : files) {
     const std::string room = RoomOf(file.path);
     // The simulated cell fills it in, but its headers must not hand it on.
-    if (IsTest(file.path) || room == "twin/campaign" ||
+    if (IsTest(file.path) || room == "twin/round" ||
         (room == "twin/cell" && !IsHeader(file.path))) {
       continue;
     }
     for (const std::string& header : telling) {
       if (includes(file, header)) {
-        breaks.push_back(file.path + " includes " + header + ": truth is for twin/campaign alone");
+        breaks.push_back(file.path + " includes " + header + ": truth is for twin/round alone");
       }
     }
   }

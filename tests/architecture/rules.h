@@ -19,8 +19,8 @@ std::vector<std::string> CheckRoomIncludes(const std::vector<SourceFile>& files)
 /// The table of rooms itself has no cycle.
 std::vector<std::string> CheckNoCycles();
 
-/// Only twin/campaign (and tests) see what is true in the twin.
-std::vector<std::string> CheckTruthStaysInCampaign(const std::vector<SourceFile>& files);
+/// Only twin/round (and tests) see what is true in the twin.
+std::vector<std::string> CheckTruthStaysInRound(const std::vector<SourceFile>& files);
 
 /// A third-party header appears only in the rooms that may use it, and some only in .cc files; an
 /// unknown third-party header is a break too.

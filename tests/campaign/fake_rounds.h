@@ -84,6 +84,24 @@ inline RoundOutput FakeRound(const Campaign& campaign, const RoundTask& task) {
   return out;
 }
 
+/// A result of one arm whose rounds are given by hand.
+inline CampaignResult Result(std::vector<RoundRecord> records, int arms = 1) {
+  CampaignResult result;
+  Campaign campaign = FakeCampaign(static_cast<int>(records.size()) / arms, arms);
+  result.identity = CampaignIdentity(campaign, "test");
+  result.records = std::move(records);
+  return result;
+}
+
+inline RoundRecord Record(int round, std::vector<Json> picks, Json summary) {
+  RoundRecord record;
+  record.round = round;
+  record.seed = RoundSeed(1, round);
+  record.picks = std::move(picks);
+  record.summary = std::move(summary);
+  return record;
+}
+
 inline CampaignRunOptions Options(const std::string& folder, Shard shard = {}) {
   CampaignRunOptions options;
   options.out_folder = folder;

@@ -11,8 +11,6 @@
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/campaign/campaign_summary.h"
-#include "twin/round/attempt_facts.h"
-#include "twin/study/compare.h"
 
 namespace tubetwin {
 namespace {
@@ -39,24 +37,6 @@ void CheckRefused(const std::vector<std::string>& folders, ErrorKind kind,
     CHECK(e.kind() == kind);
     CHECK_THAT(e.what(), Contains(said));
   }
-}
-
-/// A result of one arm whose rounds are given by hand.
-CampaignResult Result(std::vector<RoundRecord> records, int arms = 1) {
-  CampaignResult result;
-  Campaign campaign = FakeCampaign(static_cast<int>(records.size()) / arms, arms);
-  result.identity = CampaignIdentity(campaign, "test");
-  result.records = std::move(records);
-  return result;
-}
-
-RoundRecord Record(int round, std::vector<Json> picks, Json summary) {
-  RoundRecord record;
-  record.round = round;
-  record.seed = RoundSeed(1, round);
-  record.picks = std::move(picks);
-  record.summary = std::move(summary);
-  return record;
 }
 
 }  // namespace
@@ -155,62 +135,6 @@ TEST_CASE(
   CHECK(arm["sim_s"]["placed_tube"]["median"] == 45.0);
   CHECK(summary["tubes_start"] == 9);
   CHECK(summary["placed"] == 4);
-}
-
-TEST_CASE("a comparison pairs rounds by seed and tests what each pair answers") {
-  // Arm 0 fails its first pick in rounds 0 to 8, arm 1 in rounds 9 and 10: McNemar 9 against 2.
-  std::vector<RoundRecord> records;
-  for (int arm = 0; arm < 2; ++arm) {
-    for (int round = 0; round < 20; ++round) {
-      const bool fails = arm == 0 ? round < 9 : round == 9 || round == 10;
-      std::vector<Json> picks;
-      if (fails) picks.push_back(FakeRow(1, "nothing_held", false, 0));
-      picks.push_back(FakeRow(fails ? 2 : 1, "placed", true, 1));
-      RoundRecord record = Record(round, picks, FakeSummary(1, 1, 0, fails ? 70.0 : 40.0));
-      record.arm = arm;
-      records.push_back(record);
-    }
-  }
-  const CampaignResult result = Result(records, 2);
-  const Json comparison = CompareArms(PairArmsWithin(result));
-  REQUIRE(comparison["pairs"].size() == 1);
-  const Json& pair = comparison["pairs"][0];
-  CHECK(pair["pairs"] == 20);
-  const Json& first = pair["tests"][0];
-  CHECK(first["question"] == "first_pick");
-  CHECK(first["only_a"] == 2);
-  CHECK(first["only_b"] == 9);
-  CHECK(first["p"].get<double>() == Approx(0.06543).margin(5e-6));
-  CHECK(first["p_holm"].get<double>() == Approx(3 * 134.0 / 2048.0));
-  CHECK(pair["tests"][2]["question"] == "emptied");
-  CHECK(pair["tests"][2]["p"] == 1.0);
-  CHECK(pair["success"]["a"]["k"] == 20);
-  CHECK(pair["success"]["a"]["n"] == 29);
-  const double difference = 20.0 / 22.0 - 20.0 / 29.0;
-  CHECK(pair["success"]["b_minus_a"].get<double>() == Approx(difference));
-  CHECK(pair["success"]["bootstrap95"][0].get<double>() < difference);
-  CHECK(pair["success"]["bootstrap95"][1].get<double>() > difference);
-  CHECK(pair["sim_s_per_placed_tube"]["b_minus_a"].get<double>() == Approx(-10.5));
-  CHECK(pair["resolution"]["b_minus_a"].is_null());  // Never used: nothing is known.
-  CHECK_THAT(CompareText(comparison), Contains("McNemar p = 0.06543"));
-}
-
-TEST_CASE("a campaign compared with itself shows no difference, one of other seeds no pair") {
-  const TemporaryFolder folder;
-  RunShard(FakeCampaign(6), folder / "a", {0, 1});
-  RunShard(FakeCampaign(6, 1, 9), folder / "b", {0, 1});
-  const CampaignResult a = ReadCampaignResult(folder / "a");
-  const CampaignResult b = ReadCampaignResult(folder / "b");
-  const Json same = CompareArms(PairArms(a, a));
-  for (const Json& test : same["pairs"][0]["tests"]) CHECK(test["p"] == 1.0);
-  CHECK(same["pairs"][0]["success"]["b_minus_a"] == 0.0);
-  try {
-    CompareArms(PairArms(a, b));
-    FAIL("not refused");
-  } catch (const Error& e) {
-    CHECK_THAT(e.what(), Contains("no seed in common"));
-  }
-  CHECK_THROWS_AS(PairArmsWithin(a), Error);
 }
 
 }  // namespace tubetwin

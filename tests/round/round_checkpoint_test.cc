@@ -5,10 +5,8 @@
 #include <filesystem>
 
 #include "models/base/error.h"
-#include "models/base/files.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-#include "twin/campaign/campaign.h"
 #include "twin/round/round.h"
 
 namespace tubetwin {
@@ -77,28 +75,6 @@ TEST_CASE("a round that goes on from a stored moment is the uninterrupted round,
   // Another cell's state is refused, not forced in.
   from.physics.randomize = false;
   CHECK_THROWS_WITH(Run(from, folder / "other"), Contains("belongs to another cell"));
-}
-
-TEST_CASE("rounds of a campaign start from the piles of a folder, one each, by name") {
-  const TemporaryFolder folder;
-  fs::create_directory(folder / "piles");
-  SettleResult made = GeneratePile(LoadPart("pvc_a"), Bin(), 1, "dropped", 1, {});
-  for (const char* name : {"b.json", "a.json"}) SavePile(made.pile, folder / "piles/" + name);
-  WriteFileAtomically(folder / "piles/notes.txt", "no pile");
-  const auto load = [&](const std::string& rounds) {
-    WriteFileAtomically(folder / "c.toml",
-                        "rounds = " + rounds + "\n[[arm]]\nset = {pile.file = \"piles\"}\n");
-    return LoadCampaign(folder / "c.toml", {}, std::nullopt);
-  };
-  const Campaign campaign = load("2");
-  CHECK(campaign.arms[0].tubes == 1);
-  CHECK(PileFilesOf(campaign.arms[0].scenario, campaign.folder) ==
-        std::vector<std::string>{"piles/a.json", "piles/b.json"});
-  CHECK_THROWS_WITH(load("3"), Contains("holds 2 piles (*.json) for 3 rounds"));
-  const Json before = CampaignIdentity(campaign, "1");
-  made.pile.seed = 2;
-  SavePile(made.pile, folder / "piles/b.json");
-  CHECK(CampaignIdentity(campaign, "1") != before);  // Another folder is another campaign.
 }
 
 }  // namespace tubetwin

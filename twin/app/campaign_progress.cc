@@ -7,6 +7,7 @@
 #include "models/base/error.h"
 #include "twin/campaign/campaign_round.h"
 #include "twin/campaign/campaign_status.h"
+#include "twin/report/round_page.h"
 
 namespace tubetwin {
 namespace {
@@ -49,7 +50,10 @@ int RunCampaignWithProgress(const Campaign& campaign, CampaignRunOptions options
     options.progress = [&](const ShardProgress& progress) { teller.Progress(progress); };
     options.notice = [&](const std::string& text) { teller.Notice(text); };
     const CampaignRoundOptions round{options.out_folder, Parallelism{std::max(1, common.threads)},
-                                     TUBETWIN_VERSION};
+                                     TUBETWIN_VERSION, [](const std::string& folder) {
+                                       WriteRoundReport(folder, folder + "/report.html",
+                                                        /*timings=*/false);
+                                     }};
     run = RunCampaign(
         campaign, [&](const RoundTask& task) { return RunCampaignRound(campaign, task, round); },
         options);

@@ -13,6 +13,7 @@
 #include "twin/app/common.h"
 #include "twin/live/dry_run.h"
 #include "twin/live/live_cell.h"
+#include "twin/report/round_page.h"
 #include "twin/round/round.h"
 
 namespace tubetwin {
@@ -153,6 +154,9 @@ int Run(const RunOptions& run, const Common& common) {
   options.record_cell = run.record;
   options.force = run.force;
   options.program_version = TUBETWIN_VERSION;
+  options.write_report = [](const std::string& folder) {
+    WriteRoundReport(folder, (fs::path(folder) / "report.html").string(), /*timings=*/false);
+  };
   ProgressLine progress(!common.quiet);
   options.progress = [&](const std::string& text) { progress.Show(text); };
   options.stop_requested = StopOnSignals();

@@ -9,7 +9,6 @@
 #include "models/base/json.h"
 #include "models/base/random.h"
 #include "twin/render/recording.h"
-#include "twin/report/round_page.h"
 #include "twin/round/failure_picture.h"
 #include "twin/round/round.h"
 #include "twin/round/round_checkpoint.h"
@@ -31,7 +30,8 @@ Recording Cut(const Recording& whole, int from, int to) {
 
 /// Draws films and pictures of a kept round, and its page anew with them.
 std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_attempts,
-                      const std::vector<Json>& rows, bool whole, Parallelism parallelism) {
+                      const std::vector<Json>& rows, bool whole,
+                      const CampaignRoundOptions& options) {
   const Recording recording = ReadRecording((folder / "recording.bin").string());
   try {
     for (const int attempt : failed_attempts) {
@@ -40,11 +40,12 @@ std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_att
       const Recording part = Cut(recording, from, ends[attempt]);
       if (part.frames.empty()) continue;
       RenderFilm(part, (folder / "failures" / FailureFolderName(attempt) / "film.mp4").string(),
-                 kFilmStride, parallelism);
+                 kFilmStride, options.parallelism);
       DrawFailurePicture(recording, attempt, rows[attempt], folder.string());
     }
-    if (whole) RenderFilm(recording, (folder / "video.mp4").string(), kFilmStride, parallelism);
-    WriteRoundReport(folder.string(), (folder / "report.html").string(), /*timings=*/false);
+    if (whole)
+      RenderFilm(recording, (folder / "video.mp4").string(), kFilmStride, options.parallelism);
+    if (options.write_report) options.write_report(folder.string());
   } catch (const Error& e) {
     return folder.string() + ": no film: " + e.what();
   }
@@ -96,6 +97,7 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
   round.scenario_folder = campaign.folder;
   round.parallelism = options.parallelism;
   round.program_version = options.program_version;
+  round.write_report = options.write_report;
   round.keep = sampled             ? RoundKeep::kAll
                : task.keep_failure ? RoundKeep::kFailures
                                    : RoundKeep::kRows;
@@ -129,9 +131,8 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
   fs::remove(work.parent_path(), ignored);
   if (campaign.keep.films) {
     if (!sampled && !task.keep_failure) failed.clear();
-    output.afterwards = [kept, failed, rows = output.picks, sampled,
-                         parallelism = options.parallelism] {
-      return DrawFilms(kept, failed, rows, sampled, parallelism);
+    output.afterwards = [kept, failed, rows = output.picks, sampled, options] {
+      return DrawFilms(kept, failed, rows, sampled, options);
     };
   }
   return output;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "models/base/parallel.h"
@@ -22,6 +23,8 @@ struct CampaignRoundOptions {
   std::string out_folder;  ///< Of the campaign.
   Parallelism parallelism;
   std::string program_version;
+  /// As RoundOptions': makes the page of a kept round's folder, anew when films were drawn.
+  std::function<void(const std::string& folder)> write_report;
 };
 
 /// Runs one round of a campaign with RunRound(). Its result folder stays as failures/NAME when an

@@ -12,7 +12,6 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/campaign/shard_file.h"
-#include "twin/round/scoring.h"
 #include "twin/statistics/wilson.h"
 
 namespace tubetwin {

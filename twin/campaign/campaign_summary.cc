@@ -7,7 +7,6 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/round/attempt_facts.h"
-#include "twin/round/scoring.h"
 
 namespace tubetwin {
 namespace {

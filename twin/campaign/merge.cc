@@ -10,6 +10,7 @@
 #include "models/base/json.h"
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/campaign_summary.h"
+#include "twin/campaign/record_line.h"
 #include "twin/campaign/shard_file.h"
 #include "twin/round/result_files.h"
 

@@ -13,8 +13,8 @@
 #include "models/base/json.h"
 #include "twin/campaign/campaign_round.h"
 #include "twin/campaign/campaign_status.h"
+#include "twin/campaign/record_line.h"
 #include "twin/campaign/shard_file.h"
-#include "twin/round/scoring.h"
 
 namespace tubetwin {
 namespace {

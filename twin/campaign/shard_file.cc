@@ -14,6 +14,8 @@
 
 #include "models/base/error.h"
 #include "models/base/files.h"
+#include "models/base/json.h"
+#include "twin/campaign/record_line.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;

@@ -7,7 +7,7 @@
 
 namespace tubetwin {
 
-/// What really is the case in a twin cell. For scoring only: twin/campaign is the one reader (a
+/// What really is the case in a twin cell. For scoring only: twin/round is the one reader (a
 /// test checks the includes). Const access, nothing here changes the world.
 class Truth {
  public:

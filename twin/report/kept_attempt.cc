@@ -7,6 +7,7 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/render/recording.h"
+#include "twin/campaign/record_line.h"
 #include "twin/report/scene_view.h"
 #include "twin/report/text.h"
 #include "twin/report/trace.h"

@@ -1,7 +1,5 @@
 #include "twin/round/attempt_facts.h"
 
-#include "twin/round/scoring.h"
-
 namespace tubetwin {
 namespace {
 

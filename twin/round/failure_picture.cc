@@ -6,7 +6,6 @@
 
 #include "models/base/error.h"
 #include "models/base/json.h"
-#include "twin/report/text.h"
 #include "twin/round/round.h"
 
 namespace tubetwin {
@@ -18,12 +17,11 @@ void DrawFailurePicture(const Recording& recording, int row, const Json& pick,
   const int from = row == 0 ? 0 : recording.attempt_ends[row - 1];
   const int to = recording.attempt_ends[row];
   if (to <= from) return;
-  const Json& decided_s = At(pick, "/detection/at_s");
-  const int frame =
-      decided_s.is_number()
-          ? from +
-                static_cast<int>(std::lround(decided_s.get<double>() * Recording::kFramesPerSecond))
-          : to - Recording::kFramesPerSecond / 2;
+  const Json& detection = pick["detection"];
+  const int frame = detection.is_object()
+                        ? from + static_cast<int>(std::lround(detection["at_s"].get<double>() *
+                                                              Recording::kFramesPerSecond))
+                        : to - Recording::kFramesPerSecond / 2;
   const auto folder = std::filesystem::path(round_folder) / "failures" / FailureFolderName(row);
   RenderSmallPicture(recording, std::clamp(frame, from, to - 1), kWidth_px,
                      (folder / "picture.jpg").string());

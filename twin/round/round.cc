@@ -8,7 +8,6 @@
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
-#include "twin/report/round_page.h"
 #include "twin/round/failure_picture.h"
 #include "twin/round/replay_round.h"
 #include "twin/round/result_files.h"
@@ -45,7 +44,7 @@ void WriteRecord(const TwinRoundRecorder& recorder, const RoundOptions& options)
                          options.out_folder);
     }
   }
-  WriteRoundReport(options.out_folder, (out / "report.html").string(), /*timings=*/false);
+  if (options.write_report) options.write_report(options.out_folder);
 }
 
 /// What a round's pipeline is made of; lives as long as the round.
@@ -176,8 +175,8 @@ RoundResult RunCellRound(Cell& cell, const Scenario& scenario, const RoundOption
   const Pipeline pipeline{scenario, resolved, part, std::nullopt, options};
   RoundResult result = RunPipeline(cell, pipeline, recorder);
   const double cycle_wall_s = WallNow() - began;
-  if (options.keep == RoundKeep::kAll) {
-    WriteRoundReport(options.out_folder, (out / "report.html").string(), /*timings=*/false);
+  if (options.keep == RoundKeep::kAll && options.write_report) {
+    options.write_report(options.out_folder);
   }
   WriteManifest(pipeline, cycle_wall_s);
   return result;

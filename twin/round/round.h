@@ -35,6 +35,9 @@ struct RoundOptions {
   std::function<void(const std::string&)>
       progress;  ///< One line of where the round is; may be empty.
   std::function<bool()> stop_requested;
+  /// Makes the page of the finished result folder; empty: there is none. Pages are made in a room
+  /// above this one, so whoever starts a round hands it in.
+  std::function<void(const std::string& folder)> write_report;
   /// As PickCycleSetup's: an operator's word after a stop.
   std::function<Acknowledgement(const std::string&)> acknowledge;
 };

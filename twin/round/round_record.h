@@ -17,26 +17,13 @@ struct RoundRecord {
   std::vector<Json> timings;  ///< Rows of timings.jsonl, likewise.
 };
 
-/// "arm 0 round 5", as messages name it.
-std::string NameOf(const RoundRecord& record);
-
-/// A row of one round as a row of a campaign: its round's number, then its arm's, then the rest.
-Json CampaignRow(const Json& row, int arm, int round);
-
-/// One line without its line break, closed by a check sum that ParseRecordLine() verifies.
-std::string RecordLine(const RoundRecord& record);
-
-/// The record of a line. Throws Error(kBadData) saying what is wrong: half-written, damaged, or no
-/// record.
-RoundRecord ParseRecordLine(const std::string& line);
-
-/// First difference in what rows depend on (everything but timings), for messages; empty when
-/// equal.
-std::string RecordDifference(const RoundRecord& a, const RoundRecord& b);
-
-/// `json`, an object, as a line closed by "check": the fingerprint of what stands before it.
-std::string CheckedLine(const Json& json);
-/// The object of such a line without its check. Throws Error(kBadData).
-Json ParseCheckedLine(const std::string& line);
+/// Row of picks.jsonl for a round whose process left none: outcome "fault", no success, every other
+/// field null. It stands for the round's first attempt.
+Json FaultRow(const std::string& reason);
+/// Its row of timings.jsonl.
+Json FaultTimingRow(double wall_s);
+/// Its summary: nothing placed, end_reason "crashed".
+Json FaultSummary(int tubes_start, const std::string& reason);
+bool IsFaultSummary(const Json& summary);
 
 }  // namespace tubetwin

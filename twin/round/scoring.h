@@ -57,13 +57,4 @@ class RoundScorer {
   std::vector<Json> rows_;
 };
 
-/// Row of picks.jsonl for a round whose process left none: outcome "fault", no success, every other
-/// field null. It stands for the round's first attempt.
-Json FaultRow(const std::string& reason);
-/// Its row of timings.jsonl.
-Json FaultTimingRow(double wall_s);
-/// Its summary: nothing placed, end_reason "crashed".
-Json FaultSummary(int tubes_start, const std::string& reason);
-bool IsFaultSummary(const Json& summary);
-
 }  // namespace tubetwin

@@ -1,0 +1,43 @@
+// A campaign whose rounds start from given piles.
+
+#include <filesystem>
+
+#include "models/base/error.h"
+#include "models/base/files.h"
+#include "models/base/json.h"
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+#include "twin/campaign/campaign.h"
+#include "twin/round/round_checkpoint.h"
+
+namespace tubetwin {
+namespace {
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+
+}  // namespace
+
+TEST_CASE("rounds of a campaign start from the piles of a folder, one each, by name") {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "piles");
+  SettleResult made = GeneratePile(LoadPart("pvc_a"), Bin(), 1, "dropped", 1, {});
+  for (const char* name : {"b.json", "a.json"}) SavePile(made.pile, folder / "piles/" + name);
+  WriteFileAtomically(folder / "piles/notes.txt", "no pile");
+  const auto load = [&](const std::string& rounds) {
+    WriteFileAtomically(folder / "c.toml",
+                        "rounds = " + rounds + "\n[[arm]]\nset = {pile.file = \"piles\"}\n");
+    return LoadCampaign(folder / "c.toml", {}, std::nullopt);
+  };
+  const Campaign campaign = load("2");
+  CHECK(campaign.arms[0].tubes == 1);
+  CHECK(PileFilesOf(campaign.arms[0].scenario, campaign.folder) ==
+        std::vector<std::string>{"piles/a.json", "piles/b.json"});
+  CHECK_THROWS_WITH(load("3"), Contains("holds 2 piles (*.json) for 3 rounds"));
+  const Json before = CampaignIdentity(campaign, "1");
+  made.pile.seed = 2;
+  SavePile(made.pile, folder / "piles/b.json");
+  CHECK(CampaignIdentity(campaign, "1") != before);  // Another folder is another campaign.
+}
+
+}  // namespace tubetwin
