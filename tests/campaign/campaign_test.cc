@@ -50,14 +50,14 @@ set = {planner.exclude_free = true, "pile.arrangement" = "threaded", physics.ran
 )");
   CHECK(campaign.seed == 5);
   CHECK(campaign.rounds == 40);
-  REQUIRE(campaign.arms.size() == 2);
-  CHECK(campaign.arms[0].name == "pvc_a x 7");
-  CHECK(campaign.arms[0].part.name == "pvc_a");
-  CHECK(campaign.arms[1].name == "hoses");
-  CHECK(campaign.arms[1].tubes == 9);
-  CHECK(campaign.arms[1].scenario.planner.exclude_free);
-  CHECK(campaign.arms[1].scenario.pile.arrangement == "threaded");
-  CHECK_FALSE(campaign.arms[1].scenario.physics.randomize);
+  REQUIRE(campaign.variants.size() == 2);
+  CHECK(campaign.variants[0].name == "pvc_a x 7");
+  CHECK(campaign.variants[0].part.name == "pvc_a");
+  CHECK(campaign.variants[1].name == "hoses");
+  CHECK(campaign.variants[1].tubes == 9);
+  CHECK(campaign.variants[1].scenario.planner.exclude_free);
+  CHECK(campaign.variants[1].scenario.pile.arrangement == "threaded");
+  CHECK_FALSE(campaign.variants[1].scenario.physics.randomize);
 }
 
 TEST_CASE("lists make an arm of each combination, named by what differs") {
@@ -68,14 +68,14 @@ part = ["pvc_a", "hose_b"]
 count = [3, 7]
 set = {resolution.strategy = ["plus45", "plus45_minus45"], bin.size_m = [0.77, 0.58, 0.09]}
 )");
-  REQUIRE(campaign.arms.size() == 8);
-  CHECK(campaign.arms[0].scenario.bin.size_m == std::vector<double>{0.77, 0.58, 0.09});
+  REQUIRE(campaign.variants.size() == 8);
+  CHECK(campaign.variants[0].scenario.bin.size_m == std::vector<double>{0.77, 0.58, 0.09});
   int hoses = 0, sevens = 0, both = 0;
-  for (const CampaignArm& arm : campaign.arms) {
-    hoses += arm.part.name == "hose_b" ? 1 : 0;
-    sevens += arm.tubes == 7 ? 1 : 0;
-    both += arm.scenario.resolution.strategy == "plus45_minus45" ? 1 : 0;
-    CHECK_THAT(arm.name, Contains("resolution.strategy=plus45"));
+  for (const CampaignVariant& variant : campaign.variants) {
+    hoses += variant.part.name == "hose_b" ? 1 : 0;
+    sevens += variant.tubes == 7 ? 1 : 0;
+    both += variant.scenario.resolution.strategy == "plus45_minus45" ? 1 : 0;
+    CHECK_THAT(variant.name, Contains("resolution.strategy=plus45"));
   }
   CHECK(hoses == 4);
   CHECK(sevens == 4);
@@ -84,8 +84,8 @@ set = {resolution.strategy = ["plus45", "plus45_minus45"], bin.size_m = [0.77, 0
 [[arm]]
 set = {bin.size_m = [[0.77, 0.58, 0.09], [0.80, 0.60, 0.20]]}
 )");
-  REQUIRE(bins.arms.size() == 2);
-  CHECK(bins.arms[1].scenario.bin.size_m[2] == 0.20);
+  REQUIRE(bins.variants.size() == 2);
+  CHECK(bins.variants[1].scenario.bin.size_m[2] == 0.20);
 }
 
 TEST_CASE("a profile brings its own defaults under what the arm sets") {
@@ -95,11 +95,11 @@ TEST_CASE("a profile brings its own defaults under what the arm sets") {
 profile = ["best", "leao2020"]
 set = {resolution.strategy = "none"}
 )");
-  REQUIRE(campaign.arms.size() == 2);
-  CHECK(campaign.arms[1].scenario.profile == "leao2020");
-  CHECK(campaign.arms[1].scenario.perception.profile == "leao2020");
-  CHECK(campaign.arms[1].scenario.resolution.strategy == "none");
-  CHECK_THAT(campaign.arms[1].name, Contains("leao2020"));
+  REQUIRE(campaign.variants.size() == 2);
+  CHECK(campaign.variants[1].scenario.profile == "leao2020");
+  CHECK(campaign.variants[1].scenario.perception.profile == "leao2020");
+  CHECK(campaign.variants[1].scenario.resolution.strategy == "none");
+  CHECK_THAT(campaign.variants[1].name, Contains("leao2020"));
 }
 
 TEST_CASE("overrides reach the campaign or every arm") {
@@ -108,7 +108,8 @@ TEST_CASE("overrides reach the campaign or every arm") {
                                  {"rounds=2", "keep.films=false", "planner.exclude_free=true"});
   CHECK(campaign.rounds == 2);
   CHECK_FALSE(campaign.keep.films);
-  for (const CampaignArm& arm : campaign.arms) CHECK(arm.scenario.planner.exclude_free);
+  for (const CampaignVariant& variant : campaign.variants)
+    CHECK(variant.scenario.planner.exclude_free);
 }
 
 TEST_CASE("a bad campaign file is refused with its place and what is allowed") {
@@ -145,11 +146,14 @@ TEST_CASE("seeds of rounds are the arms' in common, differ and depend on the cam
 TEST_CASE("the identity holds what rows depend on and nothing of what is kept") {
   const TemporaryFolder folder;
   const std::string text = "[[arm]]\npart = \"pvc_a\"\n";
-  const Json one = CampaignIdentity(Load(folder, text), "1");
-  CHECK(CampaignIdentity(Load(folder, "[keep]\nsample = 0.5\n" + text), "1") == one);
-  CHECK_THAT(*FirstDifference(CampaignIdentity(Load(folder, text + "count = 8\n"), "1"), one),
+  const auto identity = [&](const std::string& text, const std::string& version) {
+    return IdentityOf(Load(folder, text), version).document;
+  };
+  const Json one = identity(text, "1");
+  CHECK(identity("[keep]\nsample = 0.5\n" + text, "1") == one);
+  CHECK_THAT(*FirstDifference(identity(text + "count = 8\n", "1"), one),
              Contains("arms.0.config.pile.count is 8 against 7"));
-  CHECK_THAT(*FirstDifference(CampaignIdentity(Load(folder, text), "2"), one),
+  CHECK_THAT(*FirstDifference(identity(text, "2"), one),
              Contains("program is \"2\" against \"1\""));
 }
 

@@ -12,7 +12,6 @@
 
 #include "models/base/error.h"
 #include "models/base/files.h"
-#include "models/base/json.h"
 #include "models/base/random.h"
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/merge.h"
@@ -20,84 +19,87 @@
 
 namespace tubetwin {
 
-/// A campaign of arms with three tubes that differ in the planner's exclude_free.
-inline Campaign FakeCampaign(int rounds, int arms = 1, std::int64_t seed = 1) {
+/// A campaign of variants with three tubes that differ in the planner's exclude_free.
+inline Campaign FakeCampaign(int rounds, int variants = 1, std::int64_t seed = 1) {
   Campaign campaign;
   campaign.seed = seed;
   campaign.rounds = rounds;
-  for (int i = 0; i < arms; ++i) {
-    CampaignArm arm;
-    arm.name = "arm " + std::to_string(i);
-    arm.scenario.pile.count = 3 + i;
-    arm.tubes = 3 + i;
-    campaign.arms.push_back(arm);
+  for (int i = 0; i < variants; ++i) {
+    CampaignVariant variant;
+    variant.name = "variant " + std::to_string(i);
+    variant.scenario.pile.count = 3 + i;
+    variant.tubes = 3 + i;
+    campaign.variants.push_back(variant);
   }
   return campaign;
 }
 
 /// One attempt: `placed` and `outside` are how many tubes lie there after it.
-inline Json FakeRow(int attempt, const std::string& outcome, bool success, int placed,
-                    int outside = 0, double sim_s = 30.0) {
-  Json row;
-  row["round"] = 0;
-  row["attempt"] = attempt;
-  row["used_simulator"] = sim_s > 31.0;
-  row["resolution"] = Json{{"used", false}, {"strategy", nullptr}, {"outcome", nullptr}};
-  row["outcome"] = outcome;
-  row["success"] = success;
-  row["sim_s"] =
-      Json{{"scan", 5.0}, {"move", sim_s - 8.0}, {"weigh", 2.0}, {"settle", 1.0}, {"total", sim_s}};
-  row["truth"] = Json{{"placed_ids", Json::array()}, {"outside_ids", Json::array()}};
-  for (int i = 0; i < placed; ++i) row["truth"]["placed_ids"].push_back(i);
-  for (int i = 0; i < outside; ++i) row["truth"]["outside_ids"].push_back(100 + i);
-  return row;
+inline AttemptRecord FakeAttempt(int number, AttemptOutcome outcome, bool success, int placed,
+                                 int outside = 0, double sim_s = 30.0) {
+  AttemptRecord attempt;
+  attempt.attempt = number;
+  attempt.used_simulator = sim_s > 31.0;
+  attempt.outcome = outcome;
+  attempt.success = success;
+  attempt.sim_s = AttemptReport::SimTime{5.0, sim_s - 8.0, 2.0, 1.0};
+  attempt.truth.emplace();
+  for (int i = 0; i < placed; ++i) attempt.truth->placed_ids.push_back(i);
+  for (int i = 0; i < outside; ++i) attempt.truth->outside_ids.push_back(100 + i);
+  return attempt;
 }
 
-inline Json FakeSummary(int start, int placed, int outside, double sim_s) {
-  return Json{{"tubes_start", start},  {"placed", placed}, {"attempts", 0},
-              {"outside", outside},    {"dropped", 0},     {"emptied", placed == start},
-              {"end_reason", "empty"}, {"sim_s", sim_s}};
+inline RoundSummary FakeSummary(int start, int placed, int outside, double sim_s) {
+  RoundSummary summary;
+  summary.tubes_start = start;
+  summary.placed = placed;
+  summary.outside = outside;
+  summary.success = Counts{0, 0};
+  summary.emptied = placed == start;
+  summary.end = RoundEnd::kEmpty;
+  summary.sim_s = sim_s;
+  return summary;
 }
 
-/// A round in no time, of random outcome by its seed and arm; timings come from the clock's mood.
+/// A round in no time, of random outcome by its seed and variant; timings come from the clock's
+/// mood.
 inline RoundOutput FakeRound(const Campaign& campaign, const RoundTask& task) {
   RandomStream random(static_cast<std::uint64_t>(task.seed), 0, "fake");
   RoundOutput out;
-  const int start = campaign.arms[task.arm].tubes;
-  const double chance = task.arm == 0 ? 0.7 : 0.9;
-  int placed = 0, attempt = 1;
+  const int start = campaign.variants[task.variant].tubes;
+  const double chance = task.variant == 0 ? 0.7 : 0.9;
+  int placed = 0, number = 1;
   double sim_s = 0.0;
   for (int tries = 0; placed < start && tries < 2 * start; ++tries) {
     const bool success = random.Uniform() < chance;
     placed += success ? 1 : 0;
     const double took_s = random.Uniform(25.0, 35.0);
     sim_s += took_s;
-    out.picks.push_back(
-        FakeRow(attempt, success ? "placed" : "nothing_held", success, placed, 0, took_s));
-    out.timings.push_back(Json{{"round", 0},
-                               {"attempt", attempt},
-                               {"compute_s", Json{{"total", 0.1 * (tries + 1)}}},
-                               {"wall_s", static_cast<double>(::clock())}});
-    attempt = success ? 1 : attempt + 1;
+    const auto outcome = success ? AttemptOutcome::kPlaced : AttemptOutcome::kNothingHeld;
+    out.record.attempts.push_back(FakeAttempt(number, outcome, success, placed, 0, took_s));
+    AttemptTiming timing{number, AttemptReport::ComputeTime(), static_cast<double>(::clock())};
+    timing.compute_s->total = 0.1 * (tries + 1);
+    out.record.timings.push_back(timing);
+    number = success ? 1 : number + 1;
   }
-  out.summary = FakeSummary(start, placed, 0, sim_s);
+  out.record.summary = FakeSummary(start, placed, 0, sim_s);
   return out;
 }
 
-/// A result of one arm whose rounds are given by hand.
-inline CampaignResult Result(std::vector<RoundRecord> records, int arms = 1) {
+/// A result whose rounds are given by hand.
+inline CampaignResult Result(std::vector<RoundRecord> records, int variants = 1) {
   CampaignResult result;
-  Campaign campaign = FakeCampaign(static_cast<int>(records.size()) / arms, arms);
-  result.identity = CampaignIdentity(campaign, "test");
+  Campaign campaign = FakeCampaign(static_cast<int>(records.size()) / variants, variants);
+  result.identity = IdentityOf(campaign, "test");
   result.records = std::move(records);
   return result;
 }
 
-inline RoundRecord Record(int round, std::vector<Json> picks, Json summary) {
+inline RoundRecord Record(int round, std::vector<AttemptRecord> attempts, RoundSummary summary) {
   RoundRecord record;
   record.round = round;
   record.seed = RoundSeed(1, round);
-  record.picks = std::move(picks);
+  record.attempts = std::move(attempts);
   record.summary = std::move(summary);
   return record;
 }

@@ -11,6 +11,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/campaign/campaign_summary.h"
+#include "twin/campaign/record_line.h"
 
 namespace tubetwin {
 namespace {
@@ -47,7 +48,7 @@ TEST_CASE("missing rounds, doubled rounds and foreign shards are errors that nam
   RunShard(campaign, folder / "a", {0, 3});
   RunShard(campaign, folder / "b", {1, 3});
   CheckRefused({folder / "a", folder / "b"}, ErrorKind::kBadData,
-               "arm 0 ('arm 0') lacks 4 of 12 rounds: 2, 5, 8, 11");
+               "arm 0 ('variant 0') lacks 4 of 12 rounds: 2, 5, 8, 11");
   RunShard(campaign, folder / "c", {2, 3});
   CHECK(ReadShards({folder / "c", folder / "a", folder / "b"}).records.size() == 24);
   RunShard(campaign, folder / "again", {1, 3});
@@ -76,7 +77,7 @@ TEST_CASE("doubled rounds that differ say in what") {
       campaign,
       [&](const RoundTask& task) {
         RoundOutput out = FakeRound(campaign, task);
-        out.picks[0]["outcome"] = "dropped";
+        out.record.attempts[0].outcome = AttemptOutcome::kDropped;
         return out;
       },
       options);
@@ -93,11 +94,11 @@ TEST_CASE("a merged folder reads back as what was merged and merges nothing else
   REQUIRE(again.records.size() == whole.records.size());
   for (std::size_t i = 0; i < whole.records.size(); ++i) {
     CHECK(RecordDifference(whole.records[i], again.records[i]) == "");
-    CHECK(whole.records[i].timings == again.records[i].timings);
+    CHECK(ToJson(whole.records[i]) == ToJson(again.records[i]));
   }
   RunShard(FakeCampaign(5, 2, 3), folder / "other", {0, 1});
   CHECK_THROWS_AS(WriteMerged(ReadShards({folder / "other"}), folder / "m"), Error);
-  CHECK(ReadCampaignResult(folder / "m").identity["seed"] == 1);
+  CHECK(ReadCampaignResult(folder / "m").identity.seed == 1);
 }
 
 TEST_CASE(
@@ -105,34 +106,38 @@ TEST_CASE(
   // Believed placed though nothing came; then placed at the second try; then two at once; one lost.
   const CampaignResult result =
       Result({Record(0,
-                     {FakeRow(1, "placed", false, 0), FakeRow(1, "placed", true, 1),
-                      FakeRow(1, "nothing_held", false, 1), FakeRow(2, "placed", true, 2)},
+                     {FakeAttempt(1, AttemptOutcome::kPlaced, false, 0),
+                      FakeAttempt(1, AttemptOutcome::kPlaced, true, 1),
+                      FakeAttempt(1, AttemptOutcome::kNothingHeld, false, 1),
+                      FakeAttempt(2, AttemptOutcome::kPlaced, true, 2)},
                      FakeSummary(3, 2, 0, 120.0)),
-              Record(1, {FakeRow(1, "placed", false, 2), FakeRow(1, "dropped", false, 2, 1)},
+              Record(1,
+                     {FakeAttempt(1, AttemptOutcome::kPlaced, false, 2),
+                      FakeAttempt(1, AttemptOutcome::kDropped, false, 2, 1)},
                      FakeSummary(3, 2, 1, 60.0)),
               Record(2, {}, FakeSummary(3, 0, 0, 10.0))});
-  const Json summary = CampaignSummary(result);
-  const Json& arm = summary["arms"][0];
-  CHECK(arm["success"]["k"] == 2);
-  CHECK(arm["success"]["n"] == 6);
-  CHECK(arm["first_attempt"]["k"] == 1);
-  CHECK(arm["first_attempt"]["n"] == 2);
-  CHECK(arm["emptied"]["k"] == 0);
-  CHECK(arm["emptied"]["n"] == 3);
-  CHECK(arm["rounds"] == 3);
-  CHECK(arm["several_placed"] == 1);
-  CHECK(arm["outside"] == 1);
-  CHECK(arm["failures"] ==
+  const Json summary = ToJson(Summarize(result));
+  const Json& variant = summary["arms"][0];
+  CHECK(variant["success"]["k"] == 2);
+  CHECK(variant["success"]["n"] == 6);
+  CHECK(variant["first_attempt"]["k"] == 1);
+  CHECK(variant["first_attempt"]["n"] == 2);
+  CHECK(variant["emptied"]["k"] == 0);
+  CHECK(variant["emptied"]["n"] == 3);
+  CHECK(variant["rounds"] == 3);
+  CHECK(variant["several_placed"] == 1);
+  CHECK(variant["outside"] == 1);
+  CHECK(variant["failures"] ==
         Json{{"nothing_held", 1}, {"outside", 1}, {"placed_none", 1}, {"several_placed", 1}});
-  CHECK(arm["belief"]["placed"] == Json{{"attempts", 4}, {"success", 2}});
-  CHECK(arm["by_tubes_left"][0]["tubes_left"] == 3);
-  CHECK(arm["by_tubes_left"][0]["success"]["n"] == 3);
-  CHECK(arm["by_tubes_left"][1]["tubes_left"] == 2);
-  CHECK(arm["by_tubes_left"][1]["success"]["k"] == 1);
-  CHECK(arm["by_tubes_left"][1]["success"]["n"] == 2);
-  CHECK(arm["by_tubes_left"][2]["tubes_left"] == 1);
-  CHECK(arm["sim_s"]["attempt"]["total"]["n"] == 6);
-  CHECK(arm["sim_s"]["placed_tube"]["median"] == 45.0);
+  CHECK(variant["belief"]["placed"] == Json{{"attempts", 4}, {"success", 2}});
+  CHECK(variant["by_tubes_left"][0]["tubes_left"] == 3);
+  CHECK(variant["by_tubes_left"][0]["success"]["n"] == 3);
+  CHECK(variant["by_tubes_left"][1]["tubes_left"] == 2);
+  CHECK(variant["by_tubes_left"][1]["success"]["k"] == 1);
+  CHECK(variant["by_tubes_left"][1]["success"]["n"] == 2);
+  CHECK(variant["by_tubes_left"][2]["tubes_left"] == 1);
+  CHECK(variant["sim_s"]["attempt"]["total"]["n"] == 6);
+  CHECK(variant["sim_s"]["placed_tube"]["median"] == 45.0);
   CHECK(summary["tubes_start"] == 9);
   CHECK(summary["placed"] == 4);
 }

@@ -30,14 +30,14 @@ TEST_CASE("rounds of a campaign start from the piles of a folder, one each, by n
     return LoadCampaign(folder / "c.toml", {}, std::nullopt);
   };
   const Campaign campaign = load("2");
-  CHECK(campaign.arms[0].tubes == 1);
-  CHECK(PileFilesOf(campaign.arms[0].scenario, campaign.folder) ==
+  CHECK(campaign.variants[0].tubes == 1);
+  CHECK(PileFilesOf(campaign.variants[0].scenario, campaign.folder) ==
         std::vector<std::string>{"piles/a.json", "piles/b.json"});
   CHECK_THROWS_WITH(load("3"), Contains("holds 2 piles (*.json) for 3 rounds"));
-  const Json before = CampaignIdentity(campaign, "1");
+  const Json before = IdentityOf(campaign, "1").document;
   made.pile.seed = 2;
   SavePile(made.pile, folder / "piles/b.json");
-  CHECK(CampaignIdentity(campaign, "1") != before);  // Another folder is another campaign.
+  CHECK(IdentityOf(campaign, "1").document != before);  // Another folder is another campaign.
 }
 
 }  // namespace tubetwin

@@ -10,6 +10,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/campaign/campaign_status.h"
+#include "twin/campaign/record_line.h"
 #include "twin/campaign/shard_file.h"
 
 namespace tubetwin {
@@ -51,9 +52,9 @@ TEST_CASE("a round that throws or crashes becomes a row that names it, the other
   const CampaignRun run = RunCampaign(
       campaign,
       [&](const RoundTask& task) {
-        if (task.arm == 1 && task.round == 2) ::raise(SIGSEGV);
-        if (task.arm == 0 && task.round == 3) throw LogicError("x < y does not hold");
-        if (task.arm == 0 && task.round == 4) ::_exit(3);
+        if (task.variant == 1 && task.round == 2) ::raise(SIGSEGV);
+        if (task.variant == 0 && task.round == 3) throw LogicError("x < y does not hold");
+        if (task.variant == 0 && task.round == 4) ::_exit(3);
         return FakeRound(campaign, task);
       },
       options);
@@ -61,17 +62,19 @@ TEST_CASE("a round that throws or crashes becomes a row that names it, the other
   CHECK(run.progress.faults == 3);
   const CampaignResult result = ReadShards({folder / "c"});
   const RoundRecord& crashed = result.records[6 + 2];
-  REQUIRE(crashed.picks.size() == 1);
-  CHECK(crashed.picks[0]["round"] == 2);
-  CHECK(crashed.picks[0]["arm"] == 1);
-  CHECK(crashed.picks[0]["outcome"] == "fault");
-  CHECK(crashed.picks[0]["success"] == false);
-  CHECK_THAT(crashed.picks[0]["reason"].get<std::string>(),
+  REQUIRE(crashed.attempts.size() == 1);
+  CHECK(crashed.round == 2);
+  CHECK(crashed.variant == 1);
+  CHECK(crashed.summary.crashed());
+  CHECK(crashed.attempts[0].outcome == AttemptOutcome::kFault);
+  CHECK(crashed.attempts[0].success == false);
+  CHECK_THAT(crashed.attempts[0].reason,
              Contains("crashed: its process ended by signal 11 (Segmentation fault)"));
-  CHECK_THAT(result.records[3].picks[0]["reason"].get<std::string>(), Contains("x < y"));
-  CHECK_THAT(result.records[4].picks[0]["reason"].get<std::string>(), Contains("exit code 3"));
+  CHECK_THAT(result.records[3].attempts[0].reason, Contains("x < y"));
+  CHECK_THAT(result.records[4].attempts[0].reason, Contains("exit code 3"));
   CHECK(notices.size() == 3);
-  const Json summary = WriteMerged(result, folder / "m");
+  WriteMerged(result, folder / "m");
+  const Json summary = ReadJsonFile(folder / "m/summary.json");
   CHECK(summary["crashed"] == 3);
   CHECK(summary["arms"][1]["failures"]["crashed"] == 1);
   // Every other round is what it would have been.
@@ -100,8 +103,8 @@ TEST_CASE("a round whose process is killed from outside runs once more") {
       Options(folder / "c"));
   CHECK(run.progress.faults == 1);
   const CampaignResult result = ReadShards({folder / "c"});
-  CHECK(result.records[1].summary["end_reason"] == "empty");
-  CHECK_THAT(result.records[2].picks[0]["reason"].get<std::string>(), Contains("signal 9"));
+  CHECK(result.records[1].summary.end == RoundEnd::kEmpty);
+  CHECK_THAT(result.records[2].attempts[0].reason, Contains("signal 9"));
 }
 
 TEST_CASE("a stop lets the rounds in hand end, begins no other, and the rest runs later") {
@@ -168,7 +171,7 @@ TEST_CASE("what is done after the rows cannot lose them, and its words are passe
       options);
   CHECK(notices == std::vector<std::string>{"arm 0 round 0: no film: no EGL"});
   const CampaignResult result = ReadShards({folder / "c"});
-  CHECK(result.records[1].summary["end_reason"] == "empty");
+  CHECK(result.records[1].summary.end == RoundEnd::kEmpty);
 }
 
 TEST_CASE("the processes of rounds do not grow over 200 rounds") {

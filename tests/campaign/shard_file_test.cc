@@ -14,6 +14,7 @@
 #include "tests/campaign/fake_rounds.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
+#include "twin/campaign/record_line.h"
 
 namespace tubetwin {
 namespace {
@@ -66,7 +67,7 @@ TEST_CASE("a changed configuration is refused with the key that differs, and not
   RunAll(FakeCampaign(4), folder / "c");
   const std::string before = ReadFile(folder / "c/shard-00000-of-00001.jsonl");
   Campaign other = FakeCampaign(4);
-  other.arms[0].scenario.planner.exclude_free = true;
+  other.variants[0].scenario.planner.exclude_free = true;
   const Error refused = Refusal([&] { RunAll(other, folder / "c"); });
   CHECK(refused.kind() == ErrorKind::kCannotCreate);
   CHECK_THAT(refused.what(), Contains("arms.0.config.planner.exclude_free is true against false"));
@@ -84,8 +85,8 @@ TEST_CASE("two processes cannot have one shard, and a dead owner's shard is free
   const TemporaryFolder folder;
   const Campaign campaign = FakeCampaign(4);
   std::vector<std::string> notes;
-  ClaimCampaignFolder(folder / "c", CampaignIdentity(campaign, "test"));
-  const std::string mark = Fingerprint(CampaignIdentity(campaign, "test").dump());
+  ClaimCampaignFolder(folder / "c", IdentityOf(campaign, "test"));
+  const std::string mark = IdentityOf(campaign, "test").fingerprint();
   {
     const ShardWriter owner(folder / "c", {0, 2}, mark, notes);
     int code = InChild([&] { RunAll(campaign, folder / "c", {0, 2}); });
@@ -141,7 +142,7 @@ TEST_CASE("a round that stands twice with different rows is an error that names 
   RunAll(campaign, folder / "c");
   const std::string file = folder / "c/shard-00000-of-00001.jsonl";
   RoundRecord other = ReadShardFile(file).records[1];
-  other.picks[0]["success"] = !other.picks[0]["success"].get<bool>();
+  other.attempts[0].success = !*other.attempts[0].success;
   std::ofstream(file, std::ios::app) << RecordLine(other) << "\n";
   const Error refused = Refusal([&] { RunAll(campaign, folder / "c"); });
   CHECK(refused.kind() == ErrorKind::kBadData);

@@ -12,8 +12,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/campaign/campaign_round.h"
-#include "twin/report/campaign_page.h"
-#include "twin/report/round_page.h"
+#include "twin/report/write_report.h"
 #include "twin/round/result_files.h"
 
 namespace tubetwin {
@@ -55,18 +54,18 @@ TEST_CASE("a campaign of 4,000 attempts opens without complaint or request, its 
   if (!HasBrowser()) return;
   const TemporaryFolder folder;
   Campaign campaign = FakeCampaign(660, 2);
-  campaign.arms[0].name = "</script><script>alert(1)</script>";
-  campaign.arms[1].name = "a & <img src=x onerror=\"alert(2)\">";
+  campaign.variants[0].name = "</script><script>alert(1)</script>";
+  campaign.variants[1].name = "a & <img src=x onerror=\"alert(2)\">";
   RunAll(campaign, folder.path());
   const CampaignResult result = ReadShards({folder.path()});
   std::size_t attempts = 0;
   int kept = 0;
   for (const RoundRecord& record : result.records) {
-    attempts += record.picks.size();
-    if (record.picks.size() <= 3 || kept >= 20) continue;
+    attempts += record.attempts.size();
+    if (record.attempts.size() <= 3 || kept >= 20) continue;
     ++kept;
-    const std::string name = "failures/" + RoundFolderName(record.arm, record.round);
-    WriteRecording(SmallRecording(static_cast<int>(record.picks.size())),
+    const std::string name = "failures/" + RoundFolderName(record.variant, record.round);
+    WriteRecording(SmallRecording(static_cast<int>(record.attempts.size())),
                    folder / (name + "/recording.bin"));
   }
   REQUIRE(attempts >= 4000);
@@ -79,13 +78,16 @@ TEST_CASE("a round's page opens without complaint or request, its numbers right"
   if (!HasBrowser()) return;
   const TemporaryFolder folder;
   const Campaign campaign = FakeCampaign(1);
-  const RoundOutput round = FakeRound(campaign, {0, 0, 3, true});
-  Json summary = round.summary;
-  summary["schema"] = "tubetwin/summary/1";
-  summary["success"] = Json{{"k", 3}, {"n", 4}, {"wilson95", Json::array({0.3, 0.954})}};
-  WriteJsonFile(summary, folder / "summary.json");
-  WriteJsonLines(round.picks, folder / "picks.jsonl");
-  WriteRecording(SmallRecording(static_cast<int>(round.picks.size())), folder / "recording.bin");
+  RoundRecord round = FakeRound(campaign, {0, 0, 3, true}).record;
+  round.summary.attempts = static_cast<int>(round.attempts.size());
+  round.summary.success = Counts{3, round.summary.attempts};
+  for (const AttemptRecord& attempt : round.attempts) {
+    if (attempt.success != true) continue;
+    ++round.summary.first_attempt.n;
+    round.summary.first_attempt.k += attempt.attempt == 1 ? 1 : 0;
+  }
+  WriteRoundRecord(round, folder.path());
+  WriteRecording(SmallRecording(round.summary.attempts), folder / "recording.bin");
   WriteRoundReport(folder.path(), folder / "report.html", false);
   CheckInBrowser(folder, folder / "report.html", folder / "summary.json");
 

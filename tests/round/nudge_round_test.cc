@@ -1,6 +1,7 @@
 // Rounds with a straight tube that lies along a wall, where no finger fits beside it.
 
 #include "models/base/error.h"
+#include "models/base/files.h"
 #include "scenes/pile.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
@@ -29,7 +30,7 @@ void SaveStraightTube(const Vector3& from_N, const Vector3& to_N, const std::str
   SavePile(pile, file);
 }
 
-RoundResult Run(const std::string& pile, int nudges, const std::string& out) {
+RoundRecord Run(const std::string& pile, int nudges, const std::string& out) {
   Scenario scenario;
   scenario.pile.file = pile;
   scenario.planner.nudges = nudges;
@@ -37,7 +38,7 @@ RoundResult Run(const std::string& pile, int nudges, const std::string& out) {
   options.out_folder = out;
   options.parallelism = Parallelism{1};
   options.keep = RoundKeep::kRows;
-  return RunRound(scenario, options);
+  return RunRound(scenario, options).record;
 }
 
 TEST_CASE("a tube along a wall is left with no nudges and placed after one") {
@@ -45,32 +46,31 @@ TEST_CASE("a tube along a wall is left with no nudges and placed after one") {
   const double r = LoadPart("pvc_a").radius_m, y = 0.29 - r - kGap_m;
   SaveStraightTube({-0.22, y, r}, {0.28, y, r}, folder / "pile.json");
 
-  const RoundResult without = Run(folder / "pile.json", 0, folder / "without");
-  REQUIRE(without.rows.size() == 1);
-  CHECK(without.rows[0]["outcome"] == "no_plan");
-  CHECK(without.rows[0]["nudges"].empty());
-  CHECK(without.summary["placed"] == 0);
-  CHECK(without.summary["end_reason"] == "no_plan");
-  CHECK_THAT(without.summary["end_detail"].get<std::string>(), Contains("bin's wall"));
+  const RoundRecord without = Run(folder / "pile.json", 0, folder / "without");
+  REQUIRE(without.attempts.size() == 1);
+  CHECK(without.attempts[0].outcome == AttemptOutcome::kNoPlan);
+  CHECK(without.attempts[0].nudges.empty());
+  CHECK(without.summary.placed == 0);
+  CHECK(without.summary.end == RoundEnd::kNoPlan);
+  CHECK_THAT(without.summary.end_detail, Contains("bin's wall"));
 
-  const RoundResult with = Run(folder / "pile.json", 2, folder / "with");
-  CHECK(with.summary["placed"] == 1);
-  CHECK(with.summary["end_reason"] == "empty");
-  REQUIRE(with.rows.size() == 1);
-  const Json& row = with.rows[0];
-  CHECK(row["outcome"] == "placed");
-  CHECK(row["success"] == true);
-  REQUIRE(row["nudges"].size() == 1);
-  const Json& nudge = row["nudges"][0];
-  CHECK(nudge["tube"].is_number_integer());
-  CHECK(nudge["direction"][1].get<double>() == Approx(-1.0));
-  CHECK(nudge["contact"] == true);
-  CHECK(nudge["stopped"] == false);
-  CHECK(nudge["rejected"] == "");
-  CHECK(nudge["travel_m"].get<double>() == Approx(0.056).margin(0.001));  // Rolled 28 mm.
-  CHECK(nudge["press_N"].get<double>() < kMostPress_N);
+  const RoundRecord with = Run(folder / "pile.json", 2, folder / "with");
+  CHECK(with.summary.placed == 1);
+  CHECK(with.summary.end == RoundEnd::kEmpty);
+  REQUIRE(with.attempts.size() == 1);
+  CHECK(with.attempts[0].outcome == AttemptOutcome::kPlaced);
+  CHECK(with.attempts[0].success == true);
+  REQUIRE(with.attempts[0].nudges.size() == 1);
+  const NudgeReport& nudge = with.attempts[0].nudges[0];
+  CHECK(nudge.direction_N.y() == Approx(-1.0));
+  CHECK(nudge.contact);
+  CHECK_FALSE(nudge.stopped);
+  CHECK(nudge.rejected == "");
+  CHECK(nudge.travel_m == Approx(0.056).margin(0.001));  // Rolled 28 mm.
+  CHECK(nudge.press_N < kMostPress_N);
 
-  CHECK(Run(folder / "pile.json", 2, folder / "again").rows == with.rows);
+  Run(folder / "pile.json", 2, folder / "again");
+  CHECK(ReadFile(folder / "again/picks.jsonl") == ReadFile(folder / "with/picks.jsonl"));
 }
 
 TEST_CASE("a tube in a corner is placed after at most two nudges") {
@@ -78,12 +78,12 @@ TEST_CASE("a tube in a corner is placed after at most two nudges") {
   const double r = LoadPart("pvc_a").radius_m;
   const double x = 0.385 - r - kGap_m, y = 0.29 - r - kGap_m;
   SaveStraightTube({x, y - 0.5, r}, {x, y, r}, folder / "pile.json");
-  CHECK(Run(folder / "pile.json", 0, folder / "without").summary["placed"] == 0);
-  const RoundResult with = Run(folder / "pile.json", 2, folder / "with");
-  CHECK(with.summary["placed"] == 1);
-  REQUIRE(!with.rows.empty());
-  CHECK(!with.rows[0]["nudges"].empty());
-  CHECK(with.rows[0]["nudges"].size() <= 2);
+  CHECK(Run(folder / "pile.json", 0, folder / "without").summary.placed == 0);
+  const RoundRecord with = Run(folder / "pile.json", 2, folder / "with");
+  CHECK(with.summary.placed == 1);
+  REQUIRE(!with.attempts.empty());
+  CHECK(!with.attempts[0].nudges.empty());
+  CHECK(with.attempts[0].nudges.size() <= 2);
 }
 
 }  // namespace

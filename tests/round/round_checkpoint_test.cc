@@ -30,47 +30,50 @@ Scenario Tangled() {
   return scenario;
 }
 
-RoundResult Run(const Scenario& scenario, const std::string& out) {
+RoundRecord Run(const Scenario& scenario, const std::string& out) {
   RoundOptions options;
   options.out_folder = out;
   options.parallelism = Parallelism{1};
   options.keep = RoundKeep::kRows;
-  return RunRound(scenario, options);
+  return RunRound(scenario, options).record;
 }
+
+/// The first attempt, every digit of it.
+Json Row(const RoundRecord& record) { return ToJson(record.attempts.at(0), RowPlace()); }
 
 }  // namespace
 
 TEST_CASE("a round that goes on from a stored moment is the uninterrupted round, bit by bit") {
   const TemporaryFolder folder;
-  const RoundResult whole = Run(Tangled(), folder / "whole");
-  REQUIRE_FALSE(whole.rows.empty());
-  REQUIRE(whole.rows[0]["detection"]["outcome"] == "several");
-  REQUIRE(whole.rows[0]["truth"]["held"] == 2);
+  const RoundRecord whole = Run(Tangled(), folder / "whole");
+  REQUIRE_FALSE(whole.attempts.empty());
+  REQUIRE(whole.attempts[0].detection->outcome == HeldOutcome::kSeveral);
+  REQUIRE(whole.attempts[0].truth->held == 2);
   CHECK_FALSE(fs::exists(folder / "whole/held.pile.json"));
 
   Scenario until = Tangled();
   until.cycle.end_at_several = true;
-  const RoundResult stored = Run(until, folder / "stored");
-  CHECK(stored.rows.empty());
-  CHECK(stored.summary["end_reason"] == "stored");
+  const RoundRecord stored = Run(until, folder / "stored");
+  CHECK(stored.attempts.empty());
+  CHECK(stored.summary.end == RoundEnd::kStored);
 
   Scenario from;
   from.pile.file = folder / "stored/held.pile.json";
-  const RoundResult rest = Run(from, folder / "rest");
-  REQUIRE(rest.rows.size() == 1);
-  CHECK(rest.rows[0] == whole.rows[0]);  // Every digit: forces, times, what truth says.
+  const RoundRecord rest = Run(from, folder / "rest");
+  REQUIRE(rest.attempts.size() == 1);
+  CHECK(Row(rest) == Row(whole));  // Every digit: forces, times, what truth says.
 
   // The archived start goes on the same wherever the folder is.
   Scenario archived;
   archived.pile.file = folder / "rest/given.pile.json";
-  CHECK(Run(archived, folder / "again").rows[0] == rest.rows[0]);
+  CHECK(Row(Run(archived, folder / "again")) == Row(rest));
 
   // Only what comes after the moment depends on the strategy.
   from.resolution.strategy = "none";
-  const RoundResult none = Run(from, folder / "none");
-  CHECK(none.rows[0]["detection"] == whole.rows[0]["detection"]);
-  CHECK(none.rows[0]["resolution"]["used"] == false);
-  CHECK(none.rows[0]["outcome"] == "put_back");
+  const RoundRecord none = Run(from, folder / "none");
+  CHECK(Row(none)["detection"] == Row(whole)["detection"]);
+  CHECK_FALSE(none.attempts[0].resolution_used);
+  CHECK(none.attempts[0].outcome == AttemptOutcome::kPutBack);
 
   // Another cell's state is refused, not forced in.
   from.physics.randomize = false;

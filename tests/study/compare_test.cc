@@ -14,21 +14,23 @@ using Catch::Matchers::Contains;
 }  // namespace
 
 TEST_CASE("a comparison pairs rounds by seed and tests what each pair answers") {
-  // Arm 0 fails its first pick in rounds 0 to 8, arm 1 in rounds 9 and 10: McNemar 9 against 2.
+  // Variant 0 fails its first pick in rounds 0 to 8, variant 1 in rounds 9 and 10: McNemar 9
+  // against 2.
   std::vector<RoundRecord> records;
-  for (int arm = 0; arm < 2; ++arm) {
+  for (int variant = 0; variant < 2; ++variant) {
     for (int round = 0; round < 20; ++round) {
-      const bool fails = arm == 0 ? round < 9 : round == 9 || round == 10;
-      std::vector<Json> picks;
-      if (fails) picks.push_back(FakeRow(1, "nothing_held", false, 0));
-      picks.push_back(FakeRow(fails ? 2 : 1, "placed", true, 1));
-      RoundRecord record = Record(round, picks, FakeSummary(1, 1, 0, fails ? 70.0 : 40.0));
-      record.arm = arm;
+      const bool fails = variant == 0 ? round < 9 : round == 9 || round == 10;
+      std::vector<AttemptRecord> attempts;
+      if (fails) attempts.push_back(FakeAttempt(1, AttemptOutcome::kNothingHeld, false, 0));
+      attempts.push_back(FakeAttempt(fails ? 2 : 1, AttemptOutcome::kPlaced, true, 1));
+      RoundRecord record = Record(round, attempts, FakeSummary(1, 1, 0, fails ? 70.0 : 40.0));
+      record.variant = variant;
       records.push_back(record);
     }
   }
   const CampaignResult result = Result(records, 2);
-  const Json comparison = CompareArms(PairArmsWithin(result));
+  const Comparison found = CompareVariants(PairVariantsWithin(result));
+  const Json comparison = ToJson(found);
   REQUIRE(comparison["pairs"].size() == 1);
   const Json& pair = comparison["pairs"][0];
   CHECK(pair["pairs"] == 20);
@@ -48,7 +50,7 @@ TEST_CASE("a comparison pairs rounds by seed and tests what each pair answers") 
   CHECK(pair["success"]["bootstrap95"][1].get<double>() > difference);
   CHECK(pair["sim_s_per_placed_tube"]["b_minus_a"].get<double>() == Approx(-10.5));
   CHECK(pair["resolution"]["b_minus_a"].is_null());  // Never used: nothing is known.
-  CHECK_THAT(CompareText(comparison), Contains("McNemar p = 0.06543"));
+  CHECK_THAT(CompareText(found), Contains("McNemar p = 0.06543"));
 }
 
 TEST_CASE("a campaign compared with itself shows no difference, one of other seeds no pair") {
@@ -57,16 +59,16 @@ TEST_CASE("a campaign compared with itself shows no difference, one of other see
   RunAll(FakeCampaign(6, 1, 9), folder / "b");
   const CampaignResult a = ReadCampaignResult(folder / "a");
   const CampaignResult b = ReadCampaignResult(folder / "b");
-  const Json same = CompareArms(PairArms(a, a));
+  const Json same = ToJson(CompareVariants(PairVariants(a, a)));
   for (const Json& test : same["pairs"][0]["tests"]) CHECK(test["p"] == 1.0);
   CHECK(same["pairs"][0]["success"]["b_minus_a"] == 0.0);
   try {
-    CompareArms(PairArms(a, b));
+    CompareVariants(PairVariants(a, b));
     FAIL("not refused");
   } catch (const Error& e) {
     CHECK_THAT(e.what(), Contains("no seed in common"));
   }
-  CHECK_THROWS_AS(PairArmsWithin(a), Error);
+  CHECK_THROWS_AS(PairVariantsWithin(a), Error);
 }
 
 }  // namespace tubetwin

@@ -8,39 +8,42 @@
 namespace tubetwin {
 namespace {
 
-/// One attempt as its rows: placed tubes so far, and how.
-void AddAttempt(RoundRecord& record, int attempt, bool success, int placed, const char* motion,
+/// One attempt with its times: placed tubes so far, and how.
+void AddAttempt(RoundRecord& record, int number, bool success, int placed, const char* motion,
                 bool simulator, bool resolution, double modelling_s) {
-  Json ids = Json::array();
-  for (int i = 1; i <= placed; ++i) ids.push_back(i);
-  record.picks.push_back(
-      Json{{"attempt", attempt},
-           {"motion", Json{{"name", motion}}},
-           {"used_simulator", simulator},
-           {"resolution", Json{{"used", resolution}}},
-           {"outcome", success ? "placed" : "put_back"},
-           {"success", success},
-           {"truth", Json{{"placed_ids", ids}, {"outside_ids", Json::array()}}}});
+  AttemptRecord attempt;
+  attempt.attempt = number;
+  attempt.chosen.emplace();
+  attempt.chosen->motion = motion;
+  attempt.used_simulator = simulator;
+  attempt.resolution_used = resolution;
+  attempt.outcome = success ? AttemptOutcome::kPlaced : AttemptOutcome::kPutBack;
+  attempt.success = success;
+  attempt.truth.emplace();
+  for (int i = 1; i <= placed; ++i) attempt.truth->placed_ids.push_back(i);
+  record.attempts.push_back(attempt);
+  const double evaluator_s = simulator ? 1.0 : 0.0;
   record.timings.push_back(
-      Json{{"compute_s", Json{{"modelling", modelling_s},
-                              {"planning", 0.5},
-                              {"evaluator", simulator ? 1.0 : 0.0},
-                              {"total", modelling_s + (simulator ? 1.5 : 0.5)}}}});
+      {number,
+       AttemptReport::ComputeTime{modelling_s, 0.5, evaluator_s, modelling_s + 0.5 + evaluator_s},
+       0.0});
 }
 
-/// Two rounds of two tubes in each arm: in the first an escape fails and is resolved in vain, then
-/// both are placed; in the second one tube is placed and the other is not found.
+/// Two rounds of two tubes in each variant: in the first an escape fails and is resolved in vain,
+/// then both are placed; in the second one tube is placed and the other is not found.
 CampaignResult TwoRounds() {
   CampaignResult out;
-  out.identity = Json{{"seed", 1}, {"rounds", 2}, {"arms", Json::array()}};
-  int arm = 0;
+  out.identity.seed = 1;
+  out.identity.rounds = 2;
   for (const char* name : {"A leao2020", "B leao2020", "A best", "B best"}) {
-    out.identity["arms"].push_back(Json{{"name", name}});
+    out.identity.variants.push_back(name);
     for (int round = 0; round < 2; ++round) {
       RoundRecord record;
-      record.arm = arm;
+      record.variant = static_cast<int>(out.identity.variants.size()) - 1;
       record.round = round;
-      record.summary = Json{{"tubes_start", 2}, {"emptied", round == 0}, {"end_reason", "empty"}};
+      record.summary.tubes_start = 2;
+      record.summary.emptied = round == 0;
+      record.summary.end = RoundEnd::kEmpty;
       if (round == 0) {
         AddAttempt(record, 1, false, 0, "escape+1", true, true, 1.0);
         AddAttempt(record, 2, true, 1, "up", true, false, 2.0);
@@ -50,7 +53,6 @@ CampaignResult TwoRounds() {
       }
       out.records.push_back(std::move(record));
     }
-    ++arm;
   }
   return out;
 }
@@ -70,7 +72,8 @@ void CheckRate(const Json& cell, int k, int n) {
 }
 
 TEST_CASE("The paper's tables are made of a campaign's rows", "[unit]") {
-  const Json tables = ReproductionTables(TwoRounds());
+  const Reproduction reproduction = ReproductionOf(TwoRounds());
+  const Json tables = ToJson(reproduction);
   CheckRate(Row(tables, 3, "bins emptied", nullptr)["best"], 1, 2);
   // Of the picked tubes one was placed on the second attempt.
   CheckRate(Row(tables, 4, "placed on the first attempt", 2)["best"], 1, 2);
@@ -91,12 +94,14 @@ TEST_CASE("The paper's tables are made of a campaign's rows", "[unit]") {
   CHECK(modelling["mean95"][1].get<double>() ==
         Approx(2.5 + 3.182446 * 1.2909944 / 2).epsilon(1e-6));
   CHECK(Row(tables, 9, "planning, with simulation", nullptr)["best"]["mean"] == 1.5);
-  CHECK(ReproductionText(tables).find(
-            "| Set A, bins emptied | 18/20 = 90 % [70, 97] | 1/2 = 50 %") != std::string::npos);
+  CHECK(ReproductionText(reproduction)
+            .find("| Set A, bins emptied | 18/20 = 90 % [70, 97] | 1/2 = 50 %") !=
+        std::string::npos);
 }
 
 TEST_CASE("The paper's own figures add up to what it prints over all", "[unit]") {
-  const Json tables = ReproductionTables(TwoRounds());
+  const Reproduction reproduction = ReproductionOf(TwoRounds());
+  const Json tables = ToJson(reproduction);
   CheckRate(Row(tables, 4, "placed on the first attempt", nullptr, "A")["paper"], 136, 137);
   CheckRate(Row(tables, 4, "placed on the first attempt", nullptr, "B")["paper"], 126, 135);
   CheckRate(Row(tables, 5, "simulator used", nullptr, "A")["paper"], 10, 138);
@@ -106,7 +111,8 @@ TEST_CASE("The paper's own figures add up to what it prints over all", "[unit]")
 }
 
 TEST_CASE("Intervals that do not meet the paper's are named", "[unit]") {
-  const Json tables = ReproductionTables(TwoRounds());
+  const Reproduction reproduction = ReproductionOf(TwoRounds());
+  const Json tables = ToJson(reproduction);
   // 1 to 4 s here, 0.81 s about 3.15 s there: they meet. Planning: 0.5 s against 0.84 s: apart.
   CHECK(Row(tables, 9, "modelling", nullptr)["apart"].empty());
   CHECK(Row(tables, 9, "planning, without simulation", nullptr)["apart"].size() == 2);
@@ -114,8 +120,8 @@ TEST_CASE("Intervals that do not meet the paper's are named", "[unit]") {
 
 TEST_CASE("Tables need the campaign of the reproduction", "[unit]") {
   CampaignResult other = TwoRounds();
-  other.identity["arms"][2]["name"] = "mine";
-  CHECK_THROWS_AS(ReproductionTables(other), Error);
+  other.identity.variants[2] = "mine";
+  CHECK_THROWS_AS(ReproductionOf(other), Error);
 }
 
 }  // namespace

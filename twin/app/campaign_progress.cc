@@ -7,7 +7,7 @@
 #include "models/base/error.h"
 #include "twin/campaign/campaign_round.h"
 #include "twin/campaign/campaign_status.h"
-#include "twin/report/round_page.h"
+#include "twin/report/write_report.h"
 
 namespace tubetwin {
 namespace {
@@ -52,7 +52,7 @@ int RunCampaignWithProgress(const Campaign& campaign, CampaignRunOptions options
     const CampaignRoundOptions round{options.out_folder, Parallelism{std::max(1, common.threads)},
                                      TUBETWIN_VERSION, [](const std::string& folder) {
                                        WriteRoundReport(folder, folder + "/report.html",
-                                                        /*timings=*/false);
+                                                        /*computing_times=*/false);
                                      }};
     run = RunCampaign(
         campaign, [&](const RoundTask& task) { return RunCampaignRound(campaign, task, round); },

@@ -15,8 +15,7 @@
 #include "twin/campaign/campaign_summary.h"
 #include "twin/campaign/merge.h"
 #include "twin/campaign/run_campaign.h"
-#include "twin/report/campaign_page.h"
-#include "twin/report/round_page.h"
+#include "twin/report/write_report.h"
 #include "twin/study/compare.h"
 
 namespace tubetwin {
@@ -46,6 +45,15 @@ double ParseDuration(const std::string& text) {
   return value * scale;
 }
 
+/// Writes the merged result and tells its summary.
+int MergeAndTell(const CampaignResult& result, const Common& common) {
+  WriteMerged(result, common.out);
+  const CampaignSummary summary = Summarize(result);
+  std::printf("%s", common.json ? (ToJson(summary).dump(2) + "\n").c_str()
+                                : SummaryText(summary, ManifestOf(result)).c_str());
+  return 0;
+}
+
 int RunVerb(const CampaignOptions& given, const Common& common) {
   CampaignRunOptions options;
   options.shard = ChooseShard(given.shard, given.shards,
@@ -57,12 +65,8 @@ int RunVerb(const CampaignOptions& given, const Common& common) {
   options.grace_s = given.grace_s;
   if (const int code = RunCampaignWithProgress(campaign, options, common); code != 0) return code;
   if (options.shard.count > 1) return 0;
-  const CampaignResult result =
-      ReadShards({common.out});  // The whole campaign: no merge is needed.
-  const Json summary = WriteMerged(result, common.out);
-  std::printf("%s", common.json ? (summary.dump(2) + "\n").c_str()
-                                : SummaryText(summary, CampaignManifest(result)).c_str());
-  return 0;
+  // The whole campaign: no merge is needed.
+  return MergeAndTell(ReadShards({common.out}), common);
 }
 
 int StatusVerb(const CampaignOptions& given, const Common& common) {
@@ -72,11 +76,7 @@ int StatusVerb(const CampaignOptions& given, const Common& common) {
 }
 
 int MergeVerb(const CampaignOptions& given, const Common& common) {
-  const CampaignResult result = ReadShards(given.folders);
-  const Json summary = WriteMerged(result, common.out);
-  std::printf("%s", common.json ? (summary.dump(2) + "\n").c_str()
-                                : SummaryText(summary, CampaignManifest(result)).c_str());
-  return 0;
+  return MergeAndTell(ReadShards(given.folders), common);
 }
 
 int ReportVerb(const CampaignOptions& given, const Common& common) {
@@ -86,8 +86,9 @@ int ReportVerb(const CampaignOptions& given, const Common& common) {
   // A folder of one round has no campaign.json, but a summary.
   const bool is_round =
       !fs::exists(folder / "campaign.json") && fs::exists(folder / "summary.json");
-  const std::size_t bytes = is_round ? WriteRoundReport(folder.string(), file, /*timings=*/true)
-                                     : WriteCampaignReport(folder.string(), given.kept, file);
+  const std::size_t bytes = is_round
+                                ? WriteRoundReport(folder.string(), file, /*computing_times=*/true)
+                                : WriteCampaignReport(folder.string(), given.kept, file);
   if (common.json) {
     std::printf("%s\n", Json{{"file", file}, {"bytes", bytes}}.dump(2).c_str());
   } else {
@@ -99,12 +100,12 @@ int ReportVerb(const CampaignOptions& given, const Common& common) {
 int CompareVerb(const CampaignOptions& given, const Common& common) {
   std::vector<CampaignResult> results;
   for (const std::string& folder : given.folders) results.push_back(ReadCampaignResult(folder));
-  const std::vector<ArmPair> pairs =
-      results.size() == 1 ? PairArmsWithin(results[0]) : PairArms(results[0], results[1]);
-  const Json comparison = CompareArms(pairs);
-  if (!common.out.empty()) WriteJsonFile(comparison, common.out);
-  std::printf("%s",
-              common.json ? (comparison.dump(2) + "\n").c_str() : CompareText(comparison).c_str());
+  const std::vector<VariantPair> pairs =
+      results.size() == 1 ? PairVariantsWithin(results[0]) : PairVariants(results[0], results[1]);
+  const Comparison comparison = CompareVariants(pairs);
+  if (!common.out.empty()) WriteJsonFile(ToJson(comparison), common.out);
+  std::printf("%s", common.json ? (ToJson(comparison).dump(2) + "\n").c_str()
+                                : CompareText(comparison).c_str());
   return 0;
 }
 

@@ -37,11 +37,11 @@ int RunVerb(const ReproduceOptions& given, const Common& common) {
   if (const int code = RunCampaignWithProgress(campaign, options, common); code != 0) return code;
   const CampaignResult result = ReadShards({common.out});
   WriteMerged(result, common.out);
-  const Json tables = ReproductionTables(result);
+  const Reproduction tables = ReproductionOf(result);
   const std::string text = ReproductionText(tables);
-  WriteJsonFile(tables, (folder / "tables.json").string());
+  WriteJsonFile(ToJson(tables), (folder / "tables.json").string());
   WriteFileAtomically((folder / "tables.md").string(), text);
-  std::printf("%s", common.json ? (tables.dump(2) + "\n").c_str() : text.c_str());
+  std::printf("%s", common.json ? (ToJson(tables).dump(2) + "\n").c_str() : text.c_str());
   return 0;
 }
 

@@ -13,7 +13,8 @@
 #include "twin/app/common.h"
 #include "twin/live/dry_run.h"
 #include "twin/live/live_cell.h"
-#include "twin/report/round_page.h"
+#include "twin/report/write_report.h"
+#include "twin/round/result_files.h"
 #include "twin/round/round.h"
 
 namespace tubetwin {
@@ -155,32 +156,32 @@ int Run(const RunOptions& run, const Common& common) {
   options.force = run.force;
   options.program_version = TUBETWIN_VERSION;
   options.write_report = [](const std::string& folder) {
-    WriteRoundReport(folder, (fs::path(folder) / "report.html").string(), /*timings=*/false);
+    WriteRoundReport(folder, (fs::path(folder) / "report.html").string(),
+                     /*computing_times=*/false);
   };
   ProgressLine progress(!common.quiet);
   options.progress = [&](const std::string& text) { progress.Show(text); };
   options.stop_requested = StopOnSignals();
   const RoundResult result = RunAnywhere(run, scenario, options);
 
-  const Json& s = result.summary;
+  const RoundSummary& summary = result.record.summary;
+  const Json told = RoundSummaryJson(result.record);
   if (common.json) {
-    std::printf("%s\n", s.dump(2).c_str());
+    std::printf("%s\n", told.dump(2).c_str());
   } else {
     std::printf("placed %d of %d in %d attempts, first attempt %d of %d, end: %s (%s)\n",
-                s["placed"].get<int>(), s["tubes_start"].get<int>(), s["attempts"].get<int>(),
-                s["first_attempt"]["k"].get<int>(), s["first_attempt"]["n"].get<int>(),
-                s["end_reason"].get<std::string>().c_str(),
-                s["end_detail"].get<std::string>().c_str());
+                summary.placed, summary.tubes_start, summary.attempts, summary.first_attempt.k,
+                summary.first_attempt.n, summary.EndName().c_str(), summary.end_detail.c_str());
   }
   if (result.faulted) {
     std::fprintf(stderr, "tubetwin: the round ended with a fault: %s\n",
-                 s["end_detail"].get<std::string>().c_str());
+                 summary.end_detail.c_str());
     return static_cast<int>(ErrorKind::kDevice);
   }
   if (result.interrupted && !run.dry) return static_cast<int>(ErrorKind::kInterrupted);
   int code = 0;
   for (const Requirement& wanted : requirements) {
-    if (!Holds(wanted, s)) {
+    if (!Holds(wanted, told)) {
       std::fprintf(stderr, "tubetwin: requirement '%s' does not hold\n", wanted.text.c_str());
       code = 1;
     }

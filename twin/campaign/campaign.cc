@@ -17,19 +17,19 @@ namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
 
-/// What a campaign file says besides its arms.
+/// What a campaign file says besides its variants.
 struct CampaignKeys {
   Campaign& campaign;
   void Visit(ConfigVisitor& v) {
     v.Field("seed", "seed of the campaign; each round's is drawn from it", campaign.seed,
             {0, 9007199254740991.0});
-    v.Field("rounds", "rounds of every arm", campaign.rounds, {1, 1000000});
+    v.Field("rounds", "rounds of every variant", campaign.rounds, {1, 1000000});
     v.Section("keep", "what stays of rounds besides their rows", campaign.keep);
   }
 };
 
-/// What is left of an arm when its scenario keys are taken out; these only serve messages.
-struct ArmKeys {
+/// What is left of a variant when its scenario keys are taken out; these only serve messages.
+struct VariantKeys {
   std::string name, part, count, profile, set;
   void Visit(ConfigVisitor& v) {
     v.Field("name", "what reports call it", name);
@@ -46,13 +46,13 @@ bool IsCampaignKey(const std::string& override_text) {
 }
 
 /// "pvc_a x 7, leao2020, resolution.strategy=plus45".
-std::string ArmName(const std::string& given, bool alone, const ConfigSource& keys,
-                    const CampaignArm& arm) {
+std::string VariantName(const std::string& given, bool alone, const ConfigSource& keys,
+                        const CampaignVariant& variant) {
   if (!given.empty() && alone) return given;
   std::vector<std::string> parts;
   if (!given.empty()) parts.push_back(given);
-  parts.push_back(arm.part.name + " x " + std::to_string(arm.tubes));
-  if (arm.scenario.profile != Scenario().profile) parts.push_back(arm.scenario.profile);
+  parts.push_back(variant.part.name + " x " + std::to_string(variant.tubes));
+  if (variant.scenario.profile != Scenario().profile) parts.push_back(variant.scenario.profile);
   for (const auto& [key, value] : keys.Texts()) {
     if (key == "pile.part" || key == "pile.count" || key == "profile") continue;
     parts.push_back(key + "=" + value);
@@ -61,8 +61,8 @@ std::string ArmName(const std::string& given, bool alone, const ConfigSource& ke
 }
 
 /// Reads what rounds will read, so that a missing part or pile is told before the first.
-void ReadInputs(CampaignArm& arm, const std::string& folder, int rounds) {
-  Scenario& scenario = arm.scenario;
+void ReadInputs(CampaignVariant& variant, const std::string& folder, int rounds) {
+  Scenario& scenario = variant.scenario;
   RequireTwin(scenario, "a campaign");
   ScenarioVisuals(scenario, folder);
   if (!scenario.pile.file.empty()) {
@@ -78,29 +78,29 @@ void ReadInputs(CampaignArm& arm, const std::string& folder, int rounds) {
       first.pile.file = files.front();
     }
     const Pile pile = AskedPile(first, folder);
-    arm.part = pile.part;
-    arm.tubes = static_cast<int>(pile.tubes.size());
+    variant.part = pile.part;
+    variant.tubes = static_cast<int>(pile.tubes.size());
     return;
   }
-  arm.part = LoadPart(ScenarioPartName(scenario));
-  arm.tubes = scenario.pile.count;
+  variant.part = LoadPart(ScenarioPartName(scenario));
+  variant.tubes = scenario.pile.count;
   ScenarioBin(scenario, Bin().size_m, folder);
 }
 
-void AddArms(ConfigSource table, const std::string& where,
-             const std::vector<std::string>& overrides, Campaign& campaign) {
+void AddVariants(ConfigSource table, const std::string& where,
+                 const std::vector<std::string>& overrides, Campaign& campaign) {
   ConfigSource keys = table.TakeTable("set");
   table.MoveKey("part", keys, "pile.part");
   table.MoveKey("count", keys, "pile.count");
   table.MoveKey("profile", keys, "profile");
-  ArmKeys left;
+  VariantKeys left;
   table.ReadInto(left);
   Scenario any;
   std::vector<ConfigSource> grid = keys.ExpandLists([&any](ConfigVisitor& v) { any.Visit(v); });
   for (ConfigSource& point : grid) {
     for (const std::string& text : overrides) point.AddOverride(text);
-    CampaignArm arm;
-    arm.scenario = ReadScenario(point);
+    CampaignVariant variant;
+    variant.scenario = ReadScenario(point);
     const auto texts = point.Texts();
     if (std::any_of(texts.begin(), texts.end(), [](const auto& t) { return t.first == "seed"; })) {
       throw Error(ErrorKind::kConfig,
@@ -108,14 +108,15 @@ void AddArms(ConfigSource table, const std::string& where,
                       ": set: seed: rounds of all arms share the seeds that come from the "
                       "campaign's; give it at the top");
     }
-    ReadInputs(arm, campaign.folder, campaign.rounds);
-    arm.name = ArmName(left.name, grid.size() == 1, point, arm);
-    campaign.arms.push_back(std::move(arm));
+    ReadInputs(variant, campaign.folder, campaign.rounds);
+    variant.name = VariantName(left.name, grid.size() == 1, point, variant);
+    campaign.variants.push_back(std::move(variant));
   }
 }
 
-Json ArmIdentity(const CampaignArm& arm, int index, const std::string& folder) {
-  Scenario scenario = arm.scenario;  // Visiting is non-const: one list serves reading and writing.
+Json VariantJson(const CampaignVariant& variant, int index, const std::string& folder) {
+  Scenario scenario =
+      variant.scenario;  // Visiting is non-const: one list serves reading and writing.
   Json out;
   out["arm"] = index;
   out["config"] =
@@ -133,9 +134,9 @@ Json ArmIdentity(const CampaignArm& arm, int index, const std::string& folder) {
     out["bin_mesh_fingerprint"] = Fingerprint(ReadFile(file.string()));
   }
   // What follows from the keys comes after them: a difference names the key.
-  out["part"] = PartToJson(arm.part);
-  out["tubes"] = arm.tubes;
-  out["name"] = arm.name;
+  out["part"] = PartToJson(variant.part);
+  out["tubes"] = variant.tubes;
+  out["name"] = variant.name;
   return out;
 }
 
@@ -157,12 +158,12 @@ Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& o
                       std::optional<std::int64_t> seed) {
   ConfigSource source;
   source.AddFile(path);
-  std::vector<std::string> for_arms;
+  std::vector<std::string> for_variants;
   for (const std::string& text : overrides) {
     if (IsCampaignKey(text)) {
       source.AddOverride(text);
     } else {
-      for_arms.push_back(text);
+      for_variants.push_back(text);
     }
   }
   std::vector<ConfigSource> tables = source.TakeTables("arm");
@@ -178,13 +179,13 @@ Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& o
                                         "[[arm]]\npart = \"pvc_a\"\ncount = 7");
   }
   for (std::size_t i = 0; i < tables.size(); ++i) {
-    AddArms(std::move(tables[i]), path + ": arm " + std::to_string(i), for_arms, campaign);
+    AddVariants(std::move(tables[i]), path + ": arm " + std::to_string(i), for_variants, campaign);
   }
   std::set<std::string> names;
-  for (const CampaignArm& arm : campaign.arms) {
-    if (!names.insert(arm.name).second) {
+  for (const CampaignVariant& variant : campaign.variants) {
+    if (!names.insert(variant.name).second) {
       throw Error(ErrorKind::kConfig,
-                  path + ": two arms are called '" + arm.name + "'; each needs its own name");
+                  path + ": two arms are called '" + variant.name + "'; each needs its own name");
     }
   }
   return campaign;
@@ -198,7 +199,9 @@ std::int64_t RoundSeed(std::int64_t campaign_seed, int round) {
   return static_cast<std::int64_t>((high << 26) | low);
 }
 
-Json CampaignIdentity(const Campaign& campaign, const std::string& program_version) {
+std::string CampaignIdentity::fingerprint() const { return Fingerprint(document.dump()); }
+
+CampaignIdentity IdentityOf(const Campaign& campaign, const std::string& program_version) {
   Json out;
   out["schema"] = "tubetwin/campaign/1";
   out["program"] = program_version;
@@ -206,9 +209,25 @@ Json CampaignIdentity(const Campaign& campaign, const std::string& program_versi
   out["seed"] = campaign.seed;
   out["rounds"] = campaign.rounds;
   out["arms"] = Json::array();
-  for (std::size_t i = 0; i < campaign.arms.size(); ++i) {
-    out["arms"].push_back(ArmIdentity(campaign.arms[i], static_cast<int>(i), campaign.folder));
+  for (std::size_t i = 0; i < campaign.variants.size(); ++i) {
+    out["arms"].push_back(VariantJson(campaign.variants[i], static_cast<int>(i), campaign.folder));
   }
+  return IdentityFromJson(std::move(out), "campaign.json");
+}
+
+CampaignIdentity IdentityFromJson(Json document, const std::string& source) {
+  CampaignIdentity out;
+  const JsonView view(document, source);
+  RequireSchema(view, "campaign");
+  out.program = view.Field("program").AsString();
+  out.mujoco = view.Field("mujoco").AsString();
+  out.seed = view.Field("seed").AsInteger();
+  out.rounds = static_cast<int>(view.Field("rounds").AsInteger());
+  const JsonView variants = view.Field("arms");
+  for (std::size_t i = 0; i < variants.Size(); ++i) {
+    out.variants.push_back(variants.Item(i).Field("name").AsString());
+  }
+  out.document = std::move(document);
   return out;
 }
 
@@ -225,13 +244,14 @@ std::optional<std::string> FirstDifference(const Json& mine, const Json& theirs)
   return "the order of keys";  // Equal content, written by another version.
 }
 
-void ClaimCampaignFolder(const std::string& folder, const Json& identity) {
+void ClaimCampaignFolder(const std::string& folder, const CampaignIdentity& identity) {
   MakeFolder(folder);
   const fs::path out(folder);
   const auto lock = FileLock::Take((out / "campaign.lock").string());
   const std::string file = (out / "campaign.json").string();
   if (fs::exists(file)) {
-    if (const auto difference = FirstDifference(identity, ReadCampaignIdentity(folder))) {
+    if (const auto difference =
+            FirstDifference(identity.document, ReadCampaignIdentity(folder).document)) {
       throw Error(ErrorKind::kCannotCreate,
                   folder + ": holds another campaign: " + *difference +
                       " there; give another --out, or the old configuration to go on with it");
@@ -242,17 +262,15 @@ void ClaimCampaignFolder(const std::string& folder, const Json& identity) {
     throw Error(ErrorKind::kCannotCreate,
                 folder + ": holds rows that are no campaign's; give another --out");
   }
-  WriteJsonFile(identity, file);
+  WriteJsonFile(identity.document, file);
 }
 
-Json ReadCampaignIdentity(const std::string& folder) {
+CampaignIdentity ReadCampaignIdentity(const std::string& folder) {
   const std::string file = (fs::path(folder) / "campaign.json").string();
   if (!fs::exists(file)) {
     throw Error(ErrorKind::kMissing, folder + ": holds no campaign (campaign.json is missing)");
   }
-  Json identity = ReadJsonFile(file);
-  RequireSchema(JsonView(identity, file), "campaign");
-  return identity;
+  return IdentityFromJson(ReadJsonFile(file), file);
 }
 
 }  // namespace tubetwin

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "models/base/json_fwd.h"
+#include "models/base/json.h"
 #include "models/part.h"
 #include "twin/round/scenario.h"
 
@@ -19,38 +19,49 @@ struct KeepConfig {
   void Visit(ConfigVisitor& v);
 };
 
-/// One arm: a scenario that every round runs with a seed of its own.
-struct CampaignArm {
+/// One variant: a scenario that every round runs with a seed of its own.
+struct CampaignVariant {
   std::string name;   ///< Unique; made of part, count, profile and set when the file names none.
   Scenario scenario;  ///< Its seed is a placeholder, RoundSeed() says the round's.
   Part part;          ///< What scenario.pile.part came to.
   int tubes = 0;      ///< At the start of each round.
 };
 
-/// A campaign: rounds 0 to rounds - 1 of every arm. Round r of all arms has the same seed.
+/// A campaign: rounds 0 to rounds - 1 of every variant. Round r of all variants has the same seed.
 struct Campaign {
   std::int64_t seed = 1;
   int rounds = 20;
   KeepConfig keep;
-  std::vector<CampaignArm> arms;
+  std::vector<CampaignVariant> variants;
   std::string folder = ".";  ///< What relative names of pile files refer to.
 };
 
 /// Reads a campaign file: `seed`, `rounds`, `[keep]`, and `[[arm]]` tables with `name`, `part`,
 /// `count`, `profile` and `set = {key = value}` of scenario keys. A list where a key takes one
-/// value (or a list of lists where it takes a list) makes an arm of each. `overrides` are
-/// `a.b=value`: seed, rounds and keep.* of the campaign, anything else a scenario key of every arm.
-/// Everything that rounds read is read once here, so that errors come before any round: throws
-/// Error(kConfig | kMissing | kBadData).
+/// value (or a list of lists where it takes a list) makes a variant of each. `overrides` are
+/// `a.b=value`: seed, rounds and keep.* of the campaign, anything else a scenario key of every
+/// variant. Everything that rounds read is read once here, so that errors come before any round:
+/// throws Error(kConfig | kMissing | kBadData).
 Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& overrides,
                       std::optional<std::int64_t> seed);
 
-/// Seed of one round's scenario, below 2^53; the same in every arm.
+/// Seed of one round's scenario, below 2^53; the same in every variant.
 std::int64_t RoundSeed(std::int64_t campaign_seed, int round);
 
-/// Content of campaign.json: all that rows depend on, with program and engine version. Two
-/// campaigns with equal identity give equal rows.
-Json CampaignIdentity(const Campaign& campaign, const std::string& program_version);
+/// campaign.json: all that rows depend on, with program and engine version. Two campaigns with
+/// equal documents give equal rows.
+struct CampaignIdentity {
+  Json document;  ///< The whole; what follows is read from it.
+  std::string program, mujoco;
+  std::int64_t seed = 0;
+  int rounds = 0;                     ///< Of each variant.
+  std::vector<std::string> variants;  ///< Their names.
+
+  std::string fingerprint() const;  ///< Of the document.
+};
+CampaignIdentity IdentityOf(const Campaign& campaign, const std::string& program_version);
+/// Throws Error(kBadData) naming `source`.
+CampaignIdentity IdentityFromJson(Json document, const std::string& source);
 
 /// The first key in which two identities differ with both values, for messages; nothing when equal.
 std::optional<std::string> FirstDifference(const Json& mine, const Json& theirs);
@@ -58,10 +69,10 @@ std::optional<std::string> FirstDifference(const Json& mine, const Json& theirs)
 /// Makes `folder` this campaign's: writes campaign.json, or checks the one that is there. Safe for
 /// processes that claim at the same time. Throws Error(kCannotCreate) when the folder belongs to
 /// another campaign (naming the first key that differs) or holds a single round.
-void ClaimCampaignFolder(const std::string& folder, const Json& identity);
+void ClaimCampaignFolder(const std::string& folder, const CampaignIdentity& identity);
 
 /// Reads FOLDER/campaign.json. Throws Error(kMissing) when the folder is no campaign's,
 /// Error(kBadData).
-Json ReadCampaignIdentity(const std::string& folder);
+CampaignIdentity ReadCampaignIdentity(const std::string& folder);
 
 }  // namespace tubetwin

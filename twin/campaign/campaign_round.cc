@@ -6,7 +6,6 @@
 
 #include "models/base/error.h"
 #include "models/base/files.h"
-#include "models/base/json.h"
 #include "models/base/random.h"
 #include "twin/render/recording.h"
 #include "twin/round/failure_picture.h"
@@ -30,7 +29,7 @@ Recording Cut(const Recording& whole, int from, int to) {
 
 /// Draws films and pictures of a kept round, and its page anew with them.
 std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_attempts,
-                      const std::vector<Json>& rows, bool whole,
+                      const std::vector<AttemptRecord>& attempts, bool whole,
                       const CampaignRoundOptions& options) {
   const Recording recording = ReadRecording((folder / "recording.bin").string());
   try {
@@ -41,7 +40,7 @@ std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_att
       if (part.frames.empty()) continue;
       RenderFilm(part, (folder / "failures" / FailureFolderName(attempt) / "film.mp4").string(),
                  kFilmStride, options.parallelism);
-      DrawFailurePicture(recording, attempt, rows[attempt], folder.string());
+      DrawFailurePicture(recording, attempt, attempts[attempt], folder.string());
     }
     if (whole)
       RenderFilm(recording, (folder / "video.mp4").string(), kFilmStride, options.parallelism);
@@ -54,21 +53,26 @@ std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_att
 
 }  // namespace
 
-std::string RoundFolderName(int arm, int round) {
+std::string RoundFolderName(int variant, int round) {
   char name[64];
-  std::snprintf(name, sizeof name, "arm-%02d-round-%06d", arm, round);
+  std::snprintf(name, sizeof name, "arm-%02d-round-%06d", variant, round);
   return name;
+}
+
+std::optional<std::pair<int, int>> RoundOfFolderName(const std::string& name) {
+  std::pair<int, int> out;
+  if (std::sscanf(name.c_str(), "arm-%d-round-%d", &out.first, &out.second) != 2) {
+    return std::nullopt;
+  }
+  return out;
 }
 
 int KeptFailures(const std::string& folder, const Shard& shard) {
   int kept = 0;
   std::error_code ignored;  // No folder: none is kept.
   for (const auto& entry : fs::directory_iterator(fs::path(folder) / "failures", ignored)) {
-    int arm = 0, round = 0;
-    const std::string name = entry.path().filename().string();
-    if (std::sscanf(name.c_str(), "arm-%d-round-%d", &arm, &round) == 2) {
-      kept += shard.Owns(round) ? 1 : 0;
-    }
+    const auto round = RoundOfFolderName(entry.path().filename().string());
+    if (round && shard.Owns(round->second)) ++kept;
   }
   return kept;
 }
@@ -81,12 +85,12 @@ bool IsSampled(const Campaign& campaign, int round) {
 
 RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
                              const CampaignRoundOptions& options) {
-  Scenario scenario = campaign.arms.at(static_cast<std::size_t>(task.arm)).scenario;
+  Scenario scenario = campaign.variants.at(static_cast<std::size_t>(task.variant)).scenario;
   scenario.seed = task.seed;
   const std::vector<std::string> piles = PileFilesOf(scenario, campaign.folder);
   if (!piles.empty()) scenario.pile.file = piles.at(static_cast<std::size_t>(task.round));
   const bool sampled = IsSampled(campaign, task.round);
-  const std::string name = RoundFolderName(task.arm, task.round);
+  const std::string name = RoundFolderName(task.variant, task.round);
   const fs::path out(options.out_folder);
   const fs::path work = out / "work" / name;
   std::error_code ignored;  // Left over from a killed process, or not there.
@@ -108,12 +112,11 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
   }
 
   RoundOutput output;
-  output.summary = std::move(result.summary);
-  output.picks = std::move(result.rows);
-  output.timings = std::move(result.timings);
+  output.record = std::move(result.record);
+  const std::vector<AttemptRecord>& attempts = output.record.attempts;
   std::vector<int> failed;
-  for (std::size_t i = 0; i < output.picks.size(); ++i) {
-    if (output.picks[i]["success"] != true) failed.push_back(static_cast<int>(i));
+  for (std::size_t i = 0; i < attempts.size(); ++i) {
+    if (attempts[i].success != true) failed.push_back(static_cast<int>(i));
   }
   const bool keep = sampled || (task.keep_failure && !failed.empty());
   if (!keep) {
@@ -131,8 +134,8 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
   fs::remove(work.parent_path(), ignored);
   if (campaign.keep.films) {
     if (!sampled && !task.keep_failure) failed.clear();
-    output.afterwards = [kept, failed, rows = output.picks, sampled, options] {
-      return DrawFilms(kept, failed, rows, sampled, options);
+    output.afterwards = [kept, failed, attempts, sampled, options] {
+      return DrawFilms(kept, failed, attempts, sampled, options);
     };
   }
   return output;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "models/base/parallel.h"
 #include "twin/campaign/campaign.h"
@@ -17,7 +19,9 @@ int KeptFailures(const std::string& folder, const Shard& shard);
 bool IsSampled(const Campaign& campaign, int round);
 
 /// Name of the folder of a kept round: "arm-00-round-000005".
-std::string RoundFolderName(int arm, int round);
+std::string RoundFolderName(int variant, int round);
+/// Variant and round of such a name; nothing for any other name.
+std::optional<std::pair<int, int>> RoundOfFolderName(const std::string& name);
 
 struct CampaignRoundOptions {
   std::string out_folder;  ///< Of the campaign.

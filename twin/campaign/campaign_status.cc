@@ -12,7 +12,7 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/campaign/shard_file.h"
-#include "twin/statistics/wilson.h"
+#include "twin/statistics/rate.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;
@@ -97,12 +97,11 @@ std::string ProgressText(const ShardProgress& progress) {
 }
 
 CampaignStatus ReadCampaignStatus(const std::string& folder) {
-  const Json identity = ReadCampaignIdentity(folder);
-  const JsonView view(identity, folder + "/campaign.json");
-  const auto rounds = static_cast<int>(view.Field("rounds").AsInteger());
-  const auto arms = static_cast<int>(view.Field("arms").Size());
+  const CampaignIdentity identity = ReadCampaignIdentity(folder);
+  const int rounds = identity.rounds;
+  const auto variants = static_cast<int>(identity.variants.size());
   CampaignStatus out;
-  out.rounds = rounds * arms;
+  out.rounds = rounds * variants;
   const std::vector<std::string> files = ShardFiles(folder);
   if (files.empty() && fs::exists(fs::path(folder) / "rounds.jsonl")) {
     throw Error(ErrorKind::kMissing, folder + ": is a merged result; nothing is run here");
@@ -111,15 +110,16 @@ CampaignStatus ReadCampaignStatus(const std::string& folder) {
     const ShardContent content = ReadShardFile(file);
     CampaignStatus::ShardLine line;
     line.name = content.shard.Name();
-    for (int round = 0; round < rounds; ++round) line.total += content.shard.Owns(round) ? arms : 0;
+    for (int round = 0; round < rounds; ++round)
+      line.total += content.shard.Owns(round) ? variants : 0;
     std::set<std::pair<int, int>> seen;
     for (const RoundRecord& record : content.records) {
-      if (!seen.emplace(record.arm, record.round).second) continue;
+      if (!seen.emplace(record.variant, record.round).second) continue;
       ++line.done;
-      out.faults += IsFaultSummary(record.summary) ? 1 : 0;
-      for (const Json& row : record.picks) {
+      out.faults += record.summary.crashed() ? 1 : 0;
+      for (const AttemptRecord& attempt : record.attempts) {
         ++out.attempts;
-        out.successes += row["success"] == true ? 1 : 0;
+        out.successes += attempt.success == true ? 1 : 0;
       }
     }
     AddShardState(folder, content.shard, line);
@@ -138,15 +138,12 @@ CampaignStatus ReadCampaignStatus(const std::string& folder) {
 }
 
 Json ToJson(const CampaignStatus& status) {
-  const ShareInterval interval = Wilson95(status.successes, status.attempts);
   Json out;
   out["schema"] = "tubetwin/campaign_status/1";
   out["rounds"] = status.rounds;
   out["done"] = status.done;
   out["crashed"] = status.faults;
-  out["success"] = Json{{"k", status.successes},
-                        {"n", status.attempts},
-                        {"wilson95", Json::array({interval.low, interval.high})}};
+  out["success"] = ToJson(Counts{status.successes, status.attempts});
   out["rounds_per_hour"] = status.rounds_per_hour;
   out["seconds_left"] = status.seconds_left ? Json(*status.seconds_left) : Json(nullptr);
   out["shards"] = status.shards;

@@ -22,7 +22,7 @@ std::string DurationText(double seconds);
 
 /// Where a whole campaign is, from its folder alone.
 struct CampaignStatus {
-  int rounds = 0;  ///< Of all arms.
+  int rounds = 0;  ///< Of all variants.
   int done = 0;    ///< Saved, in all shards of the folder.
   int faults = 0;
   int successes = 0, attempts = 0;

@@ -1,28 +1,97 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "models/base/json_fwd.h"
 #include "twin/campaign/merge.h"
-#include "twin/statistics/statistics.h"
+#include "twin/round/metric.h"
 
 namespace tubetwin {
 
-/// {k, n, wilson95}.
-Json RateJson(Counts counts);
-/// {k, n, wilson95, cluster95}: with the bootstrap over clusters.
-Json RateJson(const std::vector<Counts>& by_round, const RandomStream& random);
-/// {n, mean, sd, p5, median, p95, max}, null when there is no value.
-Json SpreadJson(const std::vector<double>& values);
+/// Sums over rounds.
+struct CampaignTotals {
+  int rounds = 0, crashed = 0;
+  int tubes_start = 0, placed = 0;
+  int attempts = 0;
+  int several_placed = 0;  ///< Attempts that placed more than one tube.
+  int outside = 0, dropped = 0;
+};
 
-/// Content of a campaign's summary.json, from `success` and truth alone, never from what the
-/// pipeline believes (that is `belief`): totals over all arms, and for each arm rates with Wilson
-/// intervals and, over attempts, with a bootstrap clustered by round; strata by tubes left; failure
-/// classes, most frequent first; simulated times. Holds nothing that a clock measured.
-Json CampaignSummary(const CampaignResult& result);
+/// How attempts with so many tubes in the bin went.
+struct TubesLeftSummary {
+  int tubes_left = 0;
+  Rate success;
+  Rate first_attempt;  ///< Of the placed tubes.
+};
 
-/// Content of manifest.json: versions and computing times.
-Json CampaignManifest(const CampaignResult& result);
+/// How attempts with one motion went; "none" where there was no plan.
+struct MotionSummary {
+  std::string motion;
+  Rate success;
+  int used_simulator = 0;
+  std::optional<Spread> move_s;  ///< Simulated seconds of moving.
+};
+
+/// What came of attempts that the pipeline believed to end so.
+struct BeliefSummary {
+  std::string outcome;
+  int attempts = 0, success = 0;
+  int unknown = 0;  ///< Of a cell without truth.
+};
+
+/// Names with how often they came, most frequent first, then by name.
+using Frequencies = std::vector<std::pair<std::string, int>>;
+
+/// One variant over all its rounds.
+struct VariantSummary {
+  int variant = 0;
+  std::string name;
+  CampaignTotals totals;
+  std::vector<MetricValue> metrics;             ///< One for each metric, in their order.
+  std::vector<TubesLeftSummary> by_tubes_left;  ///< Most tubes first, as the paper's Table 4.
+  std::vector<MotionSummary> by_motion;         ///< Most used first.
+  Frequencies failures;                         ///< Classes of AttemptFacts.
+  Frequencies end_reasons;                      ///< Of rounds.
+  std::vector<BeliefSummary> belief;            ///< By outcome, in the order of names.
+};
+
+/// A campaign as its summary.json tells it: from `success` and truth alone, never from what the
+/// pipeline believes (that is `belief`), and nothing that a clock measured. Its metrics refer to
+/// the list that they were made of.
+struct CampaignSummary {
+  std::int64_t seed = 0;
+  CampaignTotals totals;             ///< Over all variants.
+  std::vector<MetricValue> metrics;  ///< Likewise, without intervals by rounds.
+  std::vector<VariantSummary> variants;
+};
+CampaignSummary Summarize(const CampaignResult& result,
+                          const std::vector<Metric>& metrics = Metrics());
+Json ToJson(const CampaignSummary& summary);
+
+/// Computing times of the attempts of one variant, wall seconds.
+struct VariantTimes {
+  struct Part {
+    std::string name;  ///< "modelling", "planning", "evaluator", "total".
+    std::optional<Spread> all, without_simulator, with_simulator;
+  };
+  int variant = 0;
+  std::string name;
+  std::vector<Part> parts;
+};
+
+/// A campaign's manifest.json: versions and computing times.
+struct CampaignManifest {
+  std::string program, mujoco, fingerprint;
+  std::vector<VariantTimes> compute_s;
+};
+CampaignManifest ManifestOf(const CampaignResult& result);
+Json ToJson(const CampaignManifest& manifest);
 
 /// Both as a table for people.
-std::string SummaryText(const Json& summary, const Json& manifest);
+std::string SummaryText(const CampaignSummary& summary, const CampaignManifest& manifest);
 
 }  // namespace tubetwin

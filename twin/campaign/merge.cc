@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <sstream>
+#include <tuple>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
@@ -18,7 +18,7 @@ namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
 
-using Key = std::pair<int, int>;  ///< Arm, round.
+using Key = std::pair<int, int>;  ///< Variant, round.
 
 struct Found {
   RoundRecord record;
@@ -38,7 +38,7 @@ void AddShard(const std::string& file, const std::string& campaign, std::map<Key
   for (std::size_t i = 0; i < content.records.size(); ++i) {
     RoundRecord& record = content.records[i];
     const std::string where = file + ":" + std::to_string(content.line_of[i]);
-    const auto [at, is_new] = found.try_emplace({record.arm, record.round});
+    const auto [at, is_new] = found.try_emplace({record.variant, record.round});
     if (!is_new) {
       const std::string difference = RecordDifference(at->second.record, record);
       Fail(NameOf(record) + " stands twice, in " + at->second.where + " and in " + where +
@@ -65,76 +65,68 @@ std::string Ranges(const std::vector<int>& rounds) {
   return out;
 }
 
-/// Every round of every arm, once, with its seed.
+/// Every round of every variant, once, with its seed.
 void CheckComplete(const CampaignResult& result, const std::map<Key, Found>& found,
                    const std::vector<std::string>& folders) {
-  for (int arm = 0; arm < result.arms(); ++arm) {
+  for (int variant = 0; variant < result.variants(); ++variant) {
     std::vector<int> missing;
-    for (int round = 0; round < result.rounds(); ++round) {
-      if (found.count({arm, round}) == 0) missing.push_back(round);
+    for (int round = 0; round < result.identity.rounds; ++round) {
+      if (found.count({variant, round}) == 0) missing.push_back(round);
     }
     if (!missing.empty()) {
-      Fail("arm " + std::to_string(arm) + " ('" + result.ArmName(arm) + "') lacks " +
-           std::to_string(missing.size()) + " of " + std::to_string(result.rounds()) +
+      Fail("arm " + std::to_string(variant) + " ('" + result.VariantName(variant) + "') lacks " +
+           std::to_string(missing.size()) + " of " + std::to_string(result.identity.rounds) +
            " rounds: " + Ranges(missing) + "; run or name the shards that hold them (given: " +
            std::to_string(folders.size()) + " folders)");
     }
   }
-  const auto seed = result.identity["seed"].get<std::int64_t>();
+  const std::int64_t seed = result.identity.seed;
   for (const auto& [key, one] : found) {
-    if (key.first >= result.arms() || key.second >= result.rounds() ||
+    if (key.first >= result.variants() || key.second >= result.identity.rounds ||
         one.record.seed != RoundSeed(seed, key.second)) {
       Fail(one.where + ": " + NameOf(one.record) + " is no round of this campaign");
     }
   }
 }
 
+Key KeyOf(const JsonView& row) {
+  return {static_cast<int>(row.Field("arm").AsInteger()),
+          static_cast<int>(row.Field("round").AsInteger())};
+}
+
 /// Records out of the three row files of a merged folder.
 std::vector<RoundRecord> ReadMerged(const std::string& folder) {
   std::vector<RoundRecord> out;
   std::map<Key, std::size_t> at;
-  const auto each_line = [&](const std::string& name, const auto& use) {
-    const std::string file = (fs::path(folder) / name).string();
-    std::istringstream lines(ReadFile(file));
-    int number = 0;
-    for (std::string line; std::getline(lines, line);) {
-      const std::string where = file + ":" + std::to_string(++number);
-      Json json = Json::parse(line, nullptr, false);
-      if (json.is_discarded()) Fail(where + ": not valid JSON");
-      const JsonView view(json, where);
-      use(json,
-          Key{static_cast<int>(view.Field("arm").AsInteger()),
-              static_cast<int>(view.Field("round").AsInteger())},
-          where);
-    }
-  };
-  each_line("rounds.jsonl", [&](const Json& json, Key key, const std::string& where) {
+  const fs::path from(folder);
+  ReadJsonLines((from / "rounds.jsonl").string(), [&](const JsonView& row) {
     RoundRecord record;
-    record.arm = key.first;
-    record.round = key.second;
-    record.seed = JsonView(json, where).Field("seed").AsInteger();
-    record.summary = json["summary"];
-    if (!at.emplace(key, out.size()).second) Fail(where + ": " + NameOf(record) + " stands twice");
+    std::tie(record.variant, record.round) = KeyOf(row);
+    record.seed = row.Field("seed").AsInteger();
+    record.summary = SummaryFromJson(row.Field("summary"));
+    if (!at.emplace(KeyOf(row), out.size()).second) row.Fail(NameOf(record) + " stands twice");
     out.push_back(std::move(record));
   });
-  for (const char* name : {"picks.jsonl", "timings.jsonl"}) {
-    const bool picks = std::string(name) == "picks.jsonl";
-    each_line(name, [&](Json& json, Key key, const std::string& where) {
-      const auto found = at.find(key);
-      if (found == at.end()) Fail(where + ": its round is not in rounds.jsonl");
-      RoundRecord& record = out[found->second];
-      (picks ? record.picks : record.timings).push_back(std::move(json));
-    });
-  }
+  const auto record_of = [&](const JsonView& row) -> RoundRecord& {
+    const auto found = at.find(KeyOf(row));
+    if (found == at.end()) row.Fail("its round is not in rounds.jsonl");
+    return out[found->second];
+  };
+  ReadJsonLines((from / "picks.jsonl").string(), [&](const JsonView& row) {
+    record_of(row).attempts.push_back(AttemptFromJson(row));
+  });
+  ReadJsonLines((from / "timings.jsonl").string(), [&](const JsonView& row) {
+    record_of(row).timings.push_back(TimingFromJson(row));
+  });
   return out;
 }
 
 }  // namespace
 
-std::vector<const RoundRecord*> CampaignResult::OfArm(int arm) const {
+std::vector<const RoundRecord*> CampaignResult::OfVariant(int variant) const {
   std::vector<const RoundRecord*> out;
   for (const RoundRecord& record : records) {
-    if (record.arm == arm) out.push_back(&record);
+    if (record.variant == variant) out.push_back(&record);
   }
   return out;
 }
@@ -144,17 +136,18 @@ CampaignResult ReadShards(const std::vector<std::string>& folders) {
   CampaignResult result;
   std::map<Key, Found> found;
   for (const std::string& folder : folders) {
-    const Json identity = ReadCampaignIdentity(folder);
-    if (result.identity.is_null()) {
+    const CampaignIdentity identity = ReadCampaignIdentity(folder);
+    if (result.identity.document.is_null()) {
       result.identity = identity;
-    } else if (const auto difference = FirstDifference(result.identity, identity)) {
+    } else if (const auto difference =
+                   FirstDifference(result.identity.document, identity.document)) {
       Fail(folder + ": belongs to another campaign than " + folders.front() + ": " + *difference);
     }
     const std::vector<std::string> files = ShardFiles(folder);
     if (files.empty()) {
       throw Error(ErrorKind::kMissing, folder + ": holds no shard (shard-*.jsonl) of a campaign");
     }
-    const std::string campaign = Fingerprint(identity.dump());
+    const std::string campaign = identity.fingerprint();
     for (const std::string& file : files) AddShard(file, campaign, found);
   }
   CheckComplete(result, found, folders);
@@ -168,7 +161,7 @@ CampaignResult ReadCampaignResult(const std::string& folder) {
   result.identity = ReadCampaignIdentity(folder);
   std::map<Key, Found> found;
   for (RoundRecord& record : ReadMerged(folder)) {
-    const Key key{record.arm, record.round};
+    const Key key{record.variant, record.round};
     found[key] = {std::move(record), folder + "/rounds.jsonl"};
   }
   CheckComplete(result, found, {folder});
@@ -176,25 +169,24 @@ CampaignResult ReadCampaignResult(const std::string& folder) {
   return result;
 }
 
-Json WriteMerged(const CampaignResult& result, const std::string& folder) {
+void WriteMerged(const CampaignResult& result, const std::string& folder) {
   ClaimCampaignFolder(folder, result.identity);
   const fs::path out(folder);
   std::vector<Json> rounds, picks, timings;
   for (const RoundRecord& record : result.records) {
+    const RowPlace place{record.round, record.variant};
     rounds.push_back(Json{{"round", record.round},
-                          {"arm", record.arm},
+                          {"arm", record.variant},
                           {"seed", record.seed},
-                          {"summary", record.summary}});
-    picks.insert(picks.end(), record.picks.begin(), record.picks.end());
-    timings.insert(timings.end(), record.timings.begin(), record.timings.end());
+                          {"summary", ToJson(record.summary)}});
+    for (const AttemptRecord& attempt : record.attempts) picks.push_back(ToJson(attempt, place));
+    for (const AttemptTiming& timing : record.timings) timings.push_back(ToJson(timing, place));
   }
-  const Json summary = CampaignSummary(result);
   WriteJsonLines(picks, (out / "picks.jsonl").string());
   WriteJsonLines(timings, (out / "timings.jsonl").string());
   WriteJsonLines(rounds, (out / "rounds.jsonl").string());
-  WriteJsonFile(summary, (out / "summary.json").string());
-  WriteJsonFile(CampaignManifest(result), (out / "manifest.json").string());
-  return summary;
+  WriteJsonFile(ToJson(Summarize(result)), (out / "summary.json").string());
+  WriteJsonFile(ToJson(ManifestOf(result)), (out / "manifest.json").string());
 }
 
 }  // namespace tubetwin

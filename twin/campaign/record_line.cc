@@ -12,26 +12,36 @@ const std::string kCheckHead = ",\"check\":\"";
 const std::string kCheckTail = "\"}";
 constexpr std::size_t kCheckDigits = 16;
 
-std::vector<Json> Rows(const JsonView& view) {
-  std::vector<Json> rows;
-  for (std::size_t i = 0; i < view.Size(); ++i) rows.push_back(view.Item(i).json());
-  return rows;
-}
-
 }  // namespace
 
-std::string NameOf(const RoundRecord& record) {
-  return "arm " + std::to_string(record.arm) + " round " + std::to_string(record.round);
-}
-
-Json CampaignRow(const Json& row, int arm, int round) {
-  Json out;
-  out["round"] = round;
-  out["arm"] = arm;
-  for (const auto& [key, value] : row.items()) {
-    if (key != "round" && key != "arm") out[key] = value;
+Json ToJson(const RoundRecord& record) {
+  const RowPlace place{record.round, record.variant};
+  Json out{{"arm", record.variant},  {"round", record.round},
+           {"seed", record.seed},    {"summary", ToJson(record.summary)},
+           {"picks", Json::array()}, {"timings", Json::array()}};
+  for (const AttemptRecord& attempt : record.attempts) {
+    out["picks"].push_back(ToJson(attempt, place));
+  }
+  for (const AttemptTiming& timing : record.timings) {
+    out["timings"].push_back(ToJson(timing, place));
   }
   return out;
+}
+
+RoundRecord RecordFromJson(const JsonView& view) {
+  RoundRecord record;
+  record.variant = static_cast<int>(view.Field("arm").AsInteger());
+  record.round = static_cast<int>(view.Field("round").AsInteger());
+  record.seed = view.Field("seed").AsInteger();
+  record.summary = SummaryFromJson(view.Field("summary"));
+  const JsonView picks = view.Field("picks"), timings = view.Field("timings");
+  for (std::size_t i = 0; i < picks.Size(); ++i) {
+    record.attempts.push_back(AttemptFromJson(picks.Item(i)));
+  }
+  for (std::size_t i = 0; i < timings.Size(); ++i) {
+    record.timings.push_back(TimingFromJson(timings.Item(i)));
+  }
+  return record;
 }
 
 std::string CheckedLine(const Json& json) {
@@ -59,44 +69,28 @@ Json ParseCheckedLine(const std::string& line) {
   }
 }
 
-std::string RecordLine(const RoundRecord& record) {
-  Json out;
-  out["arm"] = record.arm;
-  out["round"] = record.round;
-  out["seed"] = record.seed;
-  out["summary"] = record.summary;
-  out["picks"] = record.picks;
-  out["timings"] = record.timings;
-  return CheckedLine(out);
-}
+std::string RecordLine(const RoundRecord& record) { return CheckedLine(ToJson(record)); }
 
 RoundRecord ParseRecordLine(const std::string& line) {
   const Json json = ParseCheckedLine(line);
-  const JsonView view(json, "round");
-  RoundRecord record;
-  record.arm = static_cast<int>(view.Field("arm").AsInteger());
-  record.round = static_cast<int>(view.Field("round").AsInteger());
-  record.seed = view.Field("seed").AsInteger();
-  record.summary = view.Field("summary").json();
-  record.picks = Rows(view.Field("picks"));
-  record.timings = Rows(view.Field("timings"));
-  return record;
+  return RecordFromJson(JsonView(json, "round"));
 }
 
 std::string RecordDifference(const RoundRecord& a, const RoundRecord& b) {
   if (a.seed != b.seed) {
     return "seed is " + std::to_string(a.seed) + " against " + std::to_string(b.seed);
   }
-  if (a.picks.size() != b.picks.size()) {
-    return "it has " + std::to_string(a.picks.size()) + " rows against " +
-           std::to_string(b.picks.size());
+  if (a.attempts.size() != b.attempts.size()) {
+    return "it has " + std::to_string(a.attempts.size()) + " rows against " +
+           std::to_string(b.attempts.size());
   }
-  for (std::size_t i = 0; i < a.picks.size(); ++i) {
-    if (const auto difference = FirstDifference(a.picks[i], b.picks[i])) {
+  for (std::size_t i = 0; i < a.attempts.size(); ++i) {
+    if (const auto difference =
+            FirstDifference(ToJson(a.attempts[i], RowPlace()), ToJson(b.attempts[i], RowPlace()))) {
       return "row " + std::to_string(i + 1) + ": " + *difference;
     }
   }
-  return FirstDifference(a.summary, b.summary).value_or("");
+  return FirstDifference(ToJson(a.summary), ToJson(b.summary)).value_or("");
 }
 
 }  // namespace tubetwin

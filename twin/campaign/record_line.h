@@ -7,11 +7,10 @@
 
 namespace tubetwin {
 
-/// "arm 0 round 5", as messages name it.
-std::string NameOf(const RoundRecord& record);
-
-/// A row of one round as a row of a campaign: its round's number, then its arm's, then the rest.
-Json CampaignRow(const Json& row, int arm, int round);
+/// {"arm", "round", "seed", "summary", "picks", "timings"}, rows with their place, and back. Throws
+/// Error(kBadData).
+Json ToJson(const RoundRecord& record);
+RoundRecord RecordFromJson(const JsonView& view);
 
 /// One line without its line break, closed by a check sum that ParseRecordLine() verifies.
 std::string RecordLine(const RoundRecord& record);

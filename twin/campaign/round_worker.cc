@@ -12,6 +12,9 @@
 #include <cstring>
 #include <exception>
 
+#include "models/base/json.h"
+#include "twin/campaign/record_line.h"
+
 namespace tubetwin {
 namespace {
 
@@ -38,13 +41,12 @@ void Send(int fd, const Json& message) {
 
 /// Everything that the child does; never returns into the parent's code.
 [[noreturn]] void RunInChild(const RoundTask& task, const RoundFunction& run, int fd) {
-  const auto begun = MonotonicNow();
   try {
-    const RoundOutput output = run(task);
-    Send(fd, Json{{"summary", output.summary},
-                  {"picks", output.picks},
-                  {"timings", output.timings},
-                  {"wall_s", MonotonicNow() - begun}});
+    RoundOutput output = run(task);
+    output.record.variant = task.variant;
+    output.record.round = task.round;
+    output.record.seed = task.seed;
+    Send(fd, ToJson(output.record));
     if (output.afterwards) {
       std::string note;
       try {
@@ -157,9 +159,7 @@ std::optional<RoundWorker::Result> RoundWorker::TakeLine() {
     result.kind = Result::Kind::kThrown;
     result.reason = message["thrown"];
   } else {
-    result.output.summary = message["summary"];
-    for (const Json& row : message["picks"]) result.output.picks.push_back(row);
-    for (const Json& row : message["timings"]) result.output.timings.push_back(row);
+    result.output.record = RecordFromJson(JsonView(message, "a round's process"));
   }
   return result;
 }

@@ -3,16 +3,15 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "models/base/error.h"
-#include "models/base/json.h"
+#include "twin/round/round_record.h"
 
 namespace tubetwin {
 
 /// One round to run.
 struct RoundTask {
-  int arm = 0;
+  int variant = 0;
   int round = 0;
   std::int64_t seed = 0;
   bool keep_failure = false;  ///< Keep its folder when an attempt fails.
@@ -20,8 +19,7 @@ struct RoundTask {
 
 /// What a round function gives back.
 struct RoundOutput {
-  Json summary;
-  std::vector<Json> picks, timings;
+  RoundRecord record;  ///< Its variant, round and seed are the task's, whatever stands here.
   /// What may still be done when the rows are safe (films); empty: nothing. Returns what a person
   /// should know of it, or nothing.
   std::function<std::string()> afterwards;

@@ -31,11 +31,11 @@ class ShardRunner {
  public:
   ShardRunner(const Campaign& campaign, const RoundFunction& run, const CampaignRunOptions& options)
       : campaign_(campaign), run_(run), options_(options), began_s_(MonotonicNow()) {
-    const Json identity = CampaignIdentity(campaign, options.program_version);
+    const CampaignIdentity identity = IdentityOf(campaign, options.program_version);
     ClaimCampaignFolder(options.out_folder, identity);
     std::vector<std::string> notes;
     writer_ = std::make_unique<ShardWriter>(options.out_folder, options.shard,
-                                            Fingerprint(identity.dump()), notes);
+                                            identity.fingerprint(), notes);
     for (const std::string& note : notes) Notice(note);
     CollectTasks();
   }
@@ -64,27 +64,27 @@ class ShardRunner {
     if (options_.notice) options_.notice(line);
   }
 
-  /// What is left to do: every round of the shard that was not found, all arms of a round together
-  /// so that a campaign that ends early still compares like with like.
+  /// What is left to do: every round of the shard that was not found, all variants of a round
+  /// together so that a campaign that ends early still compares like with like.
   void CollectTasks() {
     std::set<std::pair<int, int>> found;
-    const int arms = static_cast<int>(campaign_.arms.size());
+    const int variants = static_cast<int>(campaign_.variants.size());
     for (const RoundRecord& record : writer_->found()) {
-      if (record.arm >= arms || record.round >= campaign_.rounds ||
+      if (record.variant >= variants || record.round >= campaign_.rounds ||
           record.seed != RoundSeed(campaign_.seed, record.round)) {
         throw Error(ErrorKind::kBadData,
                     options_.out_folder + ": " + NameOf(record) + " is no round of this campaign");
       }
-      found.emplace(record.round, record.arm);
+      found.emplace(record.round, record.variant);
       Count(record);
     }
     progress_.shard = options_.shard;
     for (int round = options_.shard.index; round < campaign_.rounds;
          round += options_.shard.count) {
-      for (int arm = 0; arm < arms; ++arm) {
+      for (int variant = 0; variant < variants; ++variant) {
         ++progress_.total;
-        if (found.count({round, arm}) == 0) {
-          tasks_.push_back({{arm, round, RoundSeed(campaign_.seed, round), false}, 0});
+        if (found.count({round, variant}) == 0) {
+          tasks_.push_back({{variant, round, RoundSeed(campaign_.seed, round), false}, 0});
         }
       }
     }
@@ -93,11 +93,11 @@ class ShardRunner {
 
   void Count(const RoundRecord& record) {
     ++progress_.done;
-    for (const Json& row : record.picks) {
+    for (const AttemptRecord& attempt : record.attempts) {
       ++progress_.attempts;
-      progress_.successes += row["success"] == true ? 1 : 0;
+      progress_.successes += attempt.success == true ? 1 : 0;
     }
-    progress_.faults += IsFaultSummary(record.summary) ? 1 : 0;
+    progress_.faults += record.summary.crashed() ? 1 : 0;
   }
 
   bool MayBegin() {
@@ -167,7 +167,7 @@ class ShardRunner {
 
   static std::string NameOf(const RoundTask& task) {
     RoundRecord named;
-    named.arm = task.arm;
+    named.variant = task.variant;
     named.round = task.round;
     return tubetwin::NameOf(named);
   }
@@ -185,22 +185,18 @@ class ShardRunner {
       tasks_.push_front({task, worker.tries});
       return;
     }
-    RoundRecord record{task.arm, task.round, task.seed, {}, {}, {}};
+    RoundRecord record;
     if (result.kind == Kind::kRows) {
-      record.summary = std::move(result.output.summary);
-      record.picks = std::move(result.output.picks);
-      record.timings = std::move(result.output.timings);
+      record = std::move(result.output.record);
     } else {
       const std::string reason =
           (result.kind == Kind::kThrown ? "the round failed: " : "the round crashed: ") +
           result.reason;
       Notice(NameOf(task) + ": " + reason);
-      record.summary = FaultSummary(campaign_.arms[task.arm].tubes, reason);
-      record.picks = {FaultRow(reason)};
-      record.timings = {FaultTimingRow(worker.process->seconds())};
-    }
-    for (auto* rows : {&record.picks, &record.timings}) {
-      for (Json& row : *rows) row = CampaignRow(row, task.arm, task.round);
+      record.variant = task.variant;
+      record.round = task.round;
+      record.seed = task.seed;
+      SetCrashed(campaign_.variants[task.variant].tubes, reason, worker.process->seconds(), record);
     }
     writer_->Append(record);
     Count(record);

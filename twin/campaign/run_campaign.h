@@ -14,7 +14,7 @@ namespace tubetwin {
 /// Where a shard is, for progress lines and status files.
 struct ShardProgress {
   Shard shard;
-  int done = 0, total = 0;  ///< Rounds of all arms.
+  int done = 0, total = 0;  ///< Rounds of all variants.
   int running = 0;
   int faults = 0;                      ///< Rounds that threw or crashed.
   int successes = 0, attempts = 0;     ///< By truth, over all rounds done.
@@ -43,9 +43,9 @@ struct CampaignRun {
 };
 
 /// Runs the rounds of one shard that its file does not hold yet, `jobs` at a time, each in a
-/// process of its own, round by round through all arms, and saves each as it ends. Killed at any
-/// moment it loses the rounds in hand and nothing else; run again it goes on. On a stop no round
-/// begins, those in hand have `grace_s` to end, the rest are dropped. A round that throws or
+/// process of its own, round by round through all variants, and saves each as it ends. Killed at
+/// any moment it loses the rounds in hand and nothing else; run again it goes on. On a stop no
+/// round begins, those in hand have `grace_s` to end, the rest are dropped. A round that throws or
 /// crashes becomes a row that says so (outcome "fault"); one whose process was killed from outside
 /// runs once more first. Keeps FOLDER/status/ up to date. Throws Error(kCannotCreate) for a folder
 /// of another campaign, Error(kInterrupted) when another process has the shard, and the machine's

@@ -7,7 +7,7 @@
 namespace tubetwin {
 
 /// Part `index` of a campaign that is split into `count`: rounds r with r mod count = index, of all
-/// arms. Counts from 0.
+/// variants. Counts from 0.
 struct Shard {
   int index = 0;
   int count = 1;

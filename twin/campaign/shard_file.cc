@@ -54,7 +54,7 @@ std::vector<RoundRecord> Unique(const ShardContent& content, const std::string& 
   std::map<std::pair<int, int>, std::size_t> seen;
   for (std::size_t i = 0; i < content.records.size(); ++i) {
     const RoundRecord& record = content.records[i];
-    const auto [at, is_new] = seen.emplace(std::pair{record.arm, record.round}, i);
+    const auto [at, is_new] = seen.emplace(std::pair{record.variant, record.round}, i);
     if (is_new) {
       out.push_back(record);
       continue;

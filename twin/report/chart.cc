@@ -54,9 +54,9 @@ std::string Grid(double left, double right, double step, double from, double to,
   return out;
 }
 
-constexpr int kArmColours = 6;
+constexpr int kVariantColours = 6;
 
-std::string ArmClass(std::size_t i) { return "arm" + std::to_string(i % kArmColours); }
+std::string VariantClass(std::size_t i) { return "variant" + std::to_string(i % kVariantColours); }
 
 }  // namespace
 
@@ -135,7 +135,7 @@ std::string IntervalChartSvg(const std::vector<IntervalSeries>& series,
     for (const IntervalPoint& point : series[s].points) {
       const auto place = std::distance(places.begin(), places.find(point.x));
       const double x = kLeft + (static_cast<double>(place) + 0.5) * pitch + offset;
-      out += "<g class=\"" + ArmClass(s) + "\"><title>" + Escaped(point.hint) + "</title>" +
+      out += "<g class=\"" + VariantClass(s) + "\"><title>" + Escaped(point.hint) + "</title>" +
              Line("whisker", x, y_of(100.0 * point.low), x, y_of(100.0 * point.high)) +
              "<circle cx=\"" + Fixed(x, 1) + "\" cy=\"" + Fixed(y_of(100.0 * point.share), 1) +
              "\" r=\"4\"/></g>\n";
@@ -160,7 +160,7 @@ std::string IntervalMarkSvg(double share, double low, double high) {
          Line("grid", x_of(0.0), kMiddle, x_of(1.0), kMiddle) +
          Line("grid", x_of(0.5), 6.0, x_of(0.5), 12.0) +
          Line("grid", x_of(0.0), 4.0, x_of(0.0), 14.0) +
-         Line("grid", x_of(1.0), 4.0, x_of(1.0), 14.0) + "<g class=\"arm0\">" +
+         Line("grid", x_of(1.0), 4.0, x_of(1.0), 14.0) + "<g class=\"variant0\">" +
          Line("whisker", x_of(low), kMiddle, x_of(high), kMiddle) + "<circle cx=\"" +
          Fixed(x_of(share), 1) + "\" cy=\"9\" r=\"4\"/></g></svg>";
 }

@@ -8,7 +8,8 @@
 namespace tubetwin {
 
 /// Charts as inline SVG, so that they print and show without scripts. Colours come from the page's
-/// style: classes grid, tick, part0 to part4, arm0 to arm5, good, bad. Texts are escaped here.
+/// style: classes grid, tick, part0 to part4, variant0 to variant5, good, bad. Texts are escaped
+/// here.
 
 /// What a cell's time is spent on, in the order of picks.jsonl's sim_s.
 inline constexpr std::array<const char*, 4> kTimeParts = {"scan", "move", "weigh", "settle"};

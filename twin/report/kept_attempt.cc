@@ -7,7 +7,6 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/render/recording.h"
-#include "twin/campaign/record_line.h"
 #include "twin/report/scene_view.h"
 #include "twin/report/text.h"
 #include "twin/report/trace.h"
@@ -48,14 +47,13 @@ std::string TakePicture(const fs::path& folder, ShownLimits& limits) {
 }
 
 /// What the recording says about frames [from, to) of an attempt.
-void AddRecorded(const Recording& recording, std::pair<int, int> frames, const Json& row,
-                 ShownLimits& limits, ShownAttempt& shown) {
+void AddRecorded(const Recording& recording, std::pair<int, int> frames,
+                 const AttemptRecord& attempt, ShownLimits& limits, ShownAttempt& shown) {
   const auto [from, to] = frames;
   if (to - from < 2) return;
-  const Json& at_s = At(row, "/detection/at_s");
-  shown.trace_svg =
-      ForceTraceSvg(recording, from, to,
-                    at_s.is_number() ? std::optional<double>(at_s.get<double>()) : std::nullopt);
+  shown.trace_svg = ForceTraceSvg(
+      recording, from, to,
+      attempt.detection ? std::optional<double>(attempt.detection->at_s) : std::nullopt);
   const CellTrack track = TrackOf(recording, from, to, kStride);
   // As things lay when the plan was made: at the first frame of the look that it is made from.
   const Recording::Overlay* look = LookDuring(recording, from, to);
@@ -85,7 +83,7 @@ std::vector<ShownAttempt> ShownAttempts(const RoundRecord& record, const std::st
   }
   const std::vector<std::pair<int, int>> frames =
       recording ? FramesOf(*recording) : std::vector<std::pair<int, int>>();
-  const std::vector<AttemptFacts> facts = FactsOf(record);
+  const std::vector<AttemptFacts> facts = FactsOf(record).attempts;
   std::vector<int> order;
   for (const bool failed : {true, false}) {
     if (kind == (failed ? ShownKind::kSuccesses : ShownKind::kFailures)) continue;
@@ -97,13 +95,13 @@ std::vector<ShownAttempt> ShownAttempts(const RoundRecord& record, const std::st
   for (const int i : order) {
     if (limits.attempts <= 0) break;
     --limits.attempts;
-    const Json& row = record.picks[i];
+    const AttemptRecord& attempt = record.attempts[i];
     ShownAttempt shown;
     shown.row = i;
     shown.label = (link.empty() ? "" : NameOf(record) + ", ") + "attempt " + std::to_string(i + 1);
     shown.failure = facts[i].failure;
-    shown.believed = row["outcome"];
-    shown.reason = At(row, "/reason").is_string() ? At(row, "/reason").get<std::string>() : "";
+    shown.believed = ToString(attempt.outcome);
+    shown.reason = attempt.reason;
     shown.folder = link;
     const std::string failure_folder = "failures/" + FailureFolderName(i);
     if (fs::exists(folder / failure_folder / "film.mp4")) {
@@ -113,7 +111,7 @@ std::vector<ShownAttempt> ShownAttempts(const RoundRecord& record, const std::st
     }
     shown.picture = TakePicture(folder / failure_folder, limits);
     if (i < static_cast<int>(frames.size())) {
-      AddRecorded(*recording, frames[i], row, limits, shown);
+      AddRecorded(*recording, frames[i], attempt, limits, shown);
     }
     out.push_back(std::move(shown));
   }

@@ -24,7 +24,7 @@ std::string ReportPage(const std::string& title, const std::string& body, const 
       Escaped(title) + "</title>\n<style>\n" + std::string(report_assets::kStyle) +
       "</style>\n</head>\n<body>\n" + body + "<script type=\"application/json\" id=\"data\">" +
       ScriptJson(data) + "</script>\n<!--\n" + std::string(report_assets::kLicences) + "-->\n";
-  const bool has_scene = !At(data, "/cells").empty();
+  const bool has_scene = !data["cells"].empty();
   if (has_scene || data.contains("times")) out += Script(report_assets::kChartJs);
   if (has_scene) {
     out += Script(report_assets::kThreeJs) + Script(report_assets::kOrbitControlsJs) +

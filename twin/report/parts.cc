@@ -9,15 +9,6 @@
 namespace tubetwin {
 namespace {
 
-std::string IntervalMark(const Json& summary, const std::string& pointer) {
-  const Json& n = At(summary, pointer + "/n");
-  const Json& low = At(summary, pointer + "/wilson95/0");
-  const Json& high = At(summary, pointer + "/wilson95/1");
-  if (!n.is_number_integer() || n == 0 || !low.is_number() || !high.is_number()) return "";
-  return IntervalMarkSvg(At(summary, pointer + "/k").get<double>() / n.get<double>(),
-                         low.get<double>(), high.get<double>());
-}
-
 std::string Check(const std::string& id, const std::string& label, bool checked) {
   return "<label><input type=\"checkbox\" id=\"" + id + "\"" + (checked ? " checked" : "") + "> " +
          label + "</label>";
@@ -48,10 +39,17 @@ std::string GalleryCard(const ShownAttempt& attempt, std::size_t index, int scen
 
 }  // namespace
 
-std::string RateCard(const std::string& label, const Json& summary, const std::string& pointer) {
-  return "<div class=\"card\"><h3>" + label + "</h3><p class=\"big\">" +
-         SharePercentHtml(summary, pointer) + "</p>" + IntervalMark(summary, pointer) +
-         "<p class=\"quiet\">" + ShareDetailHtml(summary, pointer) + "</p></div>\n";
+std::string RateMark(const Rate& rate) {
+  const auto [k, n] = rate.counts;
+  if (n == 0) return "";
+  const ShareInterval wilson = Wilson95(k, n);
+  return IntervalMarkSvg(static_cast<double>(k) / n, wilson.low, wilson.high);
+}
+
+std::string RateCard(const std::string& label, const Rate& rate, const Pointer& at) {
+  return "<div class=\"card\"><h3>" + label + "</h3><p class=\"big\">" + PercentHtml(rate, at) +
+         "</p>" + RateMark(rate) + "<p class=\"quiet\">" + RateDetailHtml(rate, at) +
+         "</p></div>\n";
 }
 
 std::string FactList(const std::vector<std::pair<std::string, std::string>>& facts) {
@@ -86,21 +84,6 @@ std::string FailureName(const std::string& failure) {
   std::string out = failure;
   std::replace(out.begin(), out.end(), '_', ' ');
   return out;
-}
-
-std::string BeliefTable(const std::vector<BeliefCounts>& rows) {
-  if (rows.empty()) return "";
-  bool unknown = false;
-  for (const BeliefCounts& row : rows) unknown |= row.unknown != "0";
-  std::string out =
-      "<div class=\"wide\"><table><tr><th>the pipeline believed</th><th class=\"n\">truly "
-      "placed</th><th class=\"n\">not placed</th>" +
-      std::string(unknown ? "<th class=\"n\">unknown</th>" : "") + "</tr>\n";
-  for (const BeliefCounts& row : rows) {
-    out += "<tr><th>" + Escaped(FailureName(row.outcome)) + "</th>" + NumberCell(row.placed) +
-           NumberCell(row.not_placed) + (unknown ? NumberCell(row.unknown) : "") + "</tr>\n";
-  }
-  return out + "</table></div>\n";
 }
 
 std::string ViewerHtml(const std::vector<ShownAttempt>& attempts) {

@@ -3,15 +3,18 @@
 #include <string>
 #include <vector>
 
-#include "models/base/json_fwd.h"
 #include "twin/report/kept_attempt.h"
+#include "twin/report/text.h"
 
 namespace tubetwin {
 
-/// Pieces that pages of rounds and of campaigns share; all return HTML. `summary` is summary.json.
+/// Pieces that sections of pages are made of; all return HTML.
 
-/// A rate of the summary in large, with its interval. `label` is HTML.
-std::string RateCard(const std::string& label, const Json& summary, const std::string& pointer);
+/// A rate in large, with its interval. `label` is HTML.
+std::string RateCard(const std::string& label, const Rate& rate, const Pointer& at);
+
+/// Where a rate and its interval lie between 0 and 100 %; nothing for no trial.
+std::string RateMark(const Rate& rate);
 
 /// A row of small facts: names (HTML) and values (HTML).
 std::string FactList(const std::vector<std::pair<std::string, std::string>>& facts);
@@ -27,13 +30,6 @@ std::string Legend(const std::vector<std::pair<std::string, std::string>>& class
 
 /// Failure classes as people say them: "several placed".
 std::string FailureName(const std::string& failure);
-
-/// What the pipeline believed, against truth: {outcome: {attempts, success}} of the summary.
-struct BeliefCounts {
-  std::string outcome;
-  std::string placed, not_placed, unknown;  ///< HTML.
-};
-std::string BeliefTable(const std::vector<BeliefCounts>& rows);
 
 /// The 3-D view with its controls, filled by report/viewer.js; nothing without a scene.
 std::string ViewerHtml(const std::vector<ShownAttempt>& attempts);

@@ -8,15 +8,15 @@
 namespace tubetwin {
 namespace {
 
-std::string DataHtml(const Json& value, const std::string& pointer, const std::string& text) {
-  return "<data value=\"" + Escaped(value.dump()) + "\" data-at=\"" + Escaped(pointer) + "\">" +
+std::string DataHtml(const Json& value, const Pointer& at, const std::string& text) {
+  if (!at.path()) return text;
+  return "<data value=\"" + Escaped(value.dump()) + "\" data-at=\"" + Escaped(*at.path()) + "\">" +
          text + "</data>";
 }
 
-std::string PercentHtml(const Json& summary, const std::string& pointer) {
-  const Json& share = At(summary, pointer);
-  if (!share.is_number()) return kDash;
-  return DataHtml(share, pointer, Fixed(100.0 * share.get<double>(), 1));
+std::string IntervalHtml(const ShareInterval& interval, const Pointer& at) {
+  return DataHtml(interval.low, at / 0, Fixed(100.0 * interval.low, 1)) + " to " +
+         DataHtml(interval.high, at / 1, Fixed(100.0 * interval.high, 1)) + "&nbsp;%";
 }
 
 }  // namespace
@@ -84,64 +84,54 @@ std::string Base64(const std::string& bytes) {
   return out;
 }
 
-const Json& At(const Json& json, const std::string& pointer) {
-  static const Json null;
-  const Json::json_pointer at(pointer);
-  return json.contains(at) ? json[at] : null;
-}
-
 std::string Fixed(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
 }
 
-std::string Fixed(const Json& value, int digits) {
-  return value.is_number() ? Fixed(value.get<double>(), digits) : kDash;
+std::string Shown(const std::string& text) { return text.empty() ? kDash : Escaped(text); }
+
+Pointer Pointer::operator/(const std::string& key) const {
+  if (!path_) return Nowhere();
+  return Pointer(*path_ + "/" + key);
 }
 
-std::string Shown(const Json& value) {
-  if (value.is_null() || value == "") return kDash;
-  if (value.is_string()) return Escaped(value.get<std::string>());
-  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  return Escaped(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+std::string CountHtml(int value, const Pointer& at) {
+  return DataHtml(value, at, std::to_string(value));
 }
 
-std::string CountHtml(const Json& summary, const std::string& pointer) {
-  const Json& value = At(summary, pointer);
-  if (!value.is_number_integer()) return kDash;
-  return DataHtml(value, pointer, std::to_string(value.get<std::int64_t>()));
+std::string FixedHtml(double value, const Pointer& at, int digits) {
+  return DataHtml(value, at, Fixed(value, digits));
 }
 
-std::string FixedHtml(const Json& summary, const std::string& pointer, int digits) {
-  const Json& value = At(summary, pointer);
-  if (!value.is_number()) return kDash;
-  return DataHtml(value, pointer, Fixed(value, digits));
+std::string FixedHtml(const std::optional<double>& value, const Pointer& at, int digits) {
+  return value ? FixedHtml(*value, at, digits) : kDash;
 }
 
-std::string SharePercentHtml(const Json& summary, const std::string& pointer) {
-  const Json& k = At(summary, pointer + "/k");
-  const Json& n = At(summary, pointer + "/n");
-  if (!k.is_number_integer() || !n.is_number_integer() || n == 0) return kDash;
-  return "<span data-share=\"" + Escaped(pointer) + "\">" +
-         Fixed(100.0 * k.get<double>() / n.get<double>(), 1) + "</span>&nbsp;%";
+std::string PercentHtml(const Rate& rate, const Pointer& at) {
+  const auto [k, n] = rate.counts;
+  if (n == 0) return kDash;
+  const std::string share = Fixed(100.0 * k / n, 1);
+  if (!at.path()) return share + "&nbsp;%";
+  return "<span data-share=\"" + Escaped(*at.path()) + "\">" + share + "</span>&nbsp;%";
 }
 
-std::string ShareDetailHtml(const Json& summary, const std::string& pointer) {
-  const Json& n = At(summary, pointer + "/n");
-  if (!n.is_number_integer()) return kDash;
-  std::string out =
-      CountHtml(summary, pointer + "/k") + " of " + CountHtml(summary, pointer + "/n");
-  if (n == 0 || !At(summary, pointer + "/wilson95").is_array()) return out;
-  out += ", 95&nbsp;% interval " + PercentHtml(summary, pointer + "/wilson95/0") + " to " +
-         PercentHtml(summary, pointer + "/wilson95/1") + "&nbsp;%";
+std::string RateDetailHtml(const Rate& rate, const Pointer& at) {
+  const auto [k, n] = rate.counts;
+  if (n == 0) return kDash;
+  std::string out = CountHtml(k, at / "k") + " of " + CountHtml(n, at / "n") +
+                    ", 95&nbsp;% interval " + IntervalHtml(Wilson95(k, n), at / "wilson95");
   // A bootstrap over rounds that all agree is a point and says nothing (see ClusterBootstrap95).
-  const Json& cluster = At(summary, pointer + "/cluster95");
-  if (cluster.is_array() && cluster[0] != cluster[1]) {
-    out += " <span class=\"nowrap\">(by rounds " + PercentHtml(summary, pointer + "/cluster95/0") +
-           " to " + PercentHtml(summary, pointer + "/cluster95/1") + "&nbsp;%)</span>";
+  if (rate.by_cluster && rate.by_cluster->low != rate.by_cluster->high) {
+    out += " <span class=\"nowrap\">(by rounds " +
+           IntervalHtml(*rate.by_cluster, at / "cluster95") + ")</span>";
   }
   return out;
+}
+
+std::string RateHtml(const Rate& rate, const Pointer& at) {
+  return PercentHtml(rate, at) + " <span class=\"quiet\">" + RateDetailHtml(rate, at) + "</span>";
 }
 
 std::string NumberCell(const std::string& html) { return "<td class=\"n\">" + html + "</td>"; }

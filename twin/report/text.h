@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "models/base/json_fwd.h"
+#include "twin/statistics/rate.h"
 
 namespace tubetwin {
 
@@ -19,25 +22,38 @@ std::string ScriptJson(const Json& json);
 /// Base 64 (RFC 4648).
 std::string Base64(const std::string& bytes);
 
-/// The value under nested keys; null when any is absent.
-const Json& At(const Json& json, const std::string& pointer);
-
-/// With that many digits after the point; a dash for what is no number.
-std::string Fixed(const Json& value, int digits);
+/// With that many digits after the point.
 std::string Fixed(double value, int digits);
 
-/// A value as a person reads it, escaped; a dash for null and for an empty text.
-std::string Shown(const Json& value);
+/// A text of a record as a person reads it, escaped; a dash for an empty one.
+std::string Shown(const std::string& text);
 
-/// A number of summary.json as the page shows it, `pointer` (RFC 6901) beside it: whoever doubts a
-/// number finds where it comes from. A dash where there is none.
-std::string CountHtml(const Json& summary, const std::string& pointer);
-std::string FixedHtml(const Json& summary, const std::string& pointer, int digits);
+/// Where a number stands in summary.json (RFC 6901), so that the page can say it beside the number:
+/// whoever doubts one finds where it comes from. Of a page whose numbers stand in no file, nowhere.
+class Pointer {
+ public:
+  static Pointer Nowhere() { return Pointer(std::nullopt); }
+  Pointer() : path_("") {}  ///< The whole document.
+  Pointer operator/(const std::string& key) const;
+  Pointer operator/(std::size_t index) const { return *this / std::to_string(index); }
+  const std::optional<std::string>& path() const { return path_; }
 
-/// A rate {k, n, wilson95, cluster95?} of summary.json: "93.3 %" and
-/// "42 of 45, 95 % interval 82.1 to 97.7 %". A dash for n = 0.
-std::string SharePercentHtml(const Json& summary, const std::string& pointer);
-std::string ShareDetailHtml(const Json& summary, const std::string& pointer);
+ private:
+  explicit Pointer(std::optional<std::string> path) : path_(std::move(path)) {}
+  std::optional<std::string> path_;
+};
+
+/// A number with its pointer.
+std::string CountHtml(int value, const Pointer& at);
+std::string FixedHtml(double value, const Pointer& at, int digits);
+/// A dash where there is no value.
+std::string FixedHtml(const std::optional<double>& value, const Pointer& at, int digits);
+
+/// A rate: "93.3 %", and "42 of 45, 95 % interval 82.1 to 97.7 %". A dash for n = 0.
+std::string PercentHtml(const Rate& rate, const Pointer& at);
+std::string RateDetailHtml(const Rate& rate, const Pointer& at);
+/// Both behind each other, the second in small.
+std::string RateHtml(const Rate& rate, const Pointer& at);
 
 /// "<td class=n>..</td>".
 std::string NumberCell(const std::string& html);

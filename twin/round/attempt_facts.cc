@@ -8,39 +8,45 @@ std::string FailureOf(const AttemptFacts& facts, bool crashed) {
   if (crashed) return "crashed";
   if (facts.outside > 0) return "outside";
   if (facts.placed > 1) return "several_placed";
-  const std::string outcome = (*facts.row)["outcome"];
-  if (outcome == "placed" && (*facts.row)["success"].is_null()) return "";  // No truth to doubt it.
-  if (outcome == "placed") return "placed_none";
-  return facts.placed == 1 ? "placed_unnoticed" : outcome;
+  if (facts.attempt->outcome == AttemptOutcome::kPlaced) {
+    return facts.attempt->success ? "placed_none" : "";  // Without truth nobody doubts it.
+  }
+  return facts.placed == 1 ? "placed_unnoticed" : ToString(facts.attempt->outcome);
 }
 
 }  // namespace
 
-std::vector<AttemptFacts> FactsOf(const RoundRecord& record) {
-  std::vector<AttemptFacts> out;
-  const int start = record.summary["tubes_start"];
-  const bool crashed = IsFaultSummary(record.summary);
-  int placed_before = record.summary.value("placed_before", 0);
-  int outside_before = record.summary.value("outside_before", 0);
-  for (const Json& row : record.picks) {
+RoundFacts FactsOf(const RoundRecord& record) {
+  RoundFacts out{&record, {}};
+  int placed_before = record.summary.placed_before;
+  int outside_before = record.summary.outside_before;
+  for (std::size_t i = 0; i < record.attempts.size(); ++i) {
+    const AttemptRecord& attempt = record.attempts[i];
     AttemptFacts facts;
-    facts.row = &row;
-    facts.first = row["attempt"] == 1;
-    facts.success = row["success"] == true;
-    facts.tubes_left = start - placed_before - outside_before;
-    if (row["truth"].is_object()) {
-      const auto placed = static_cast<int>(row["truth"]["placed_ids"].size());
-      const auto outside = static_cast<int>(row["truth"]["outside_ids"].size());
+    facts.attempt = &attempt;
+    if (i < record.timings.size()) facts.timing = &record.timings[i];
+    facts.first = attempt.attempt == 1;
+    facts.success = attempt.success == true;
+    facts.tubes_left = record.summary.tubes_start - placed_before - outside_before;
+    if (attempt.truth) {
+      const auto placed = static_cast<int>(attempt.truth->placed_ids.size());
+      const auto outside = static_cast<int>(attempt.truth->outside_ids.size());
       facts.placed = facts.success ? 1 : placed - placed_before;
       facts.outside = outside - outside_before;
       placed_before = placed;
       outside_before = outside;
-    } else if (row["success"].is_null() && row["tubes_in_bin"].is_number()) {
-      facts.tubes_left = row["tubes_in_bin"];  // Without truth, what the pipeline saw.
+    } else if (!attempt.success && attempt.tubes_in_bin) {
+      facts.tubes_left = *attempt.tubes_in_bin;  // Without truth, what the pipeline saw.
     }
-    facts.failure = FailureOf(facts, crashed);
-    out.push_back(std::move(facts));
+    facts.failure = FailureOf(facts, record.summary.crashed());
+    out.attempts.push_back(std::move(facts));
   }
+  return out;
+}
+
+std::vector<RoundFacts> FactsOf(const std::vector<const RoundRecord*>& records) {
+  std::vector<RoundFacts> out;
+  for (const RoundRecord* record : records) out.push_back(FactsOf(*record));
   return out;
 }
 

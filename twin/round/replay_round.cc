@@ -77,13 +77,9 @@ CellRecordingHeader CellHeader(const Scenario& scenario, const std::string& reso
   header.fingerprint = Fingerprint(resolved_toml);
   header.part = part;
   if (held) {
-    header.held = JsonView(held->document, held->file).Field("held").Field("cycle").json().dump();
+    header.held = ToJson(held->cycle).dump();
   }
   return header;
-}
-
-AttemptCheckpoint HeldCycle(const RoundCheckpoint& held) {
-  return AttemptCheckpointFromJson(JsonView(held.document, held.file).Field("held").Field("cycle"));
 }
 
 std::string BelievedAttempt(const AttemptReport& report) {

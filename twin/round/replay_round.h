@@ -21,9 +21,6 @@ CellRecordingHeader CellHeader(const Scenario& scenario, const std::string& reso
                                const std::string& program_version, const Part& part,
                                const std::optional<RoundCheckpoint>& held);
 
-/// The pick cycle's part of a stored round.
-AttemptCheckpoint HeldCycle(const RoundCheckpoint& held);
-
 /// What the pipeline believes of an attempt, as a line of JSON without what a clock measured.
 std::string BelievedAttempt(const AttemptReport& report);
 

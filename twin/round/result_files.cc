@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
@@ -59,6 +60,51 @@ void WriteJsonLines(const std::vector<Json>& rows, const std::string& path) {
   std::string text;
   for (const Json& row : rows) text += row.dump() + "\n";
   WriteFileAtomically(path, text);
+}
+
+void ReadJsonLines(const std::string& path, const std::function<void(const JsonView& row)>& use) {
+  std::istringstream lines(ReadFile(path));
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string where = path + ":" + std::to_string(++number);
+    const Json row = Json::parse(line, nullptr, false);
+    if (!row.is_object()) throw Error(ErrorKind::kBadData, where + ": not a JSON object");
+    use(JsonView(row, where));
+  }
+}
+
+Json RoundSummaryJson(const RoundRecord& record, const std::vector<Metric>& metrics) {
+  Json out = ToJson(record.summary);
+  const std::vector<RoundFacts> facts = {FactsOf(record)};
+  for (const Metric& metric : metrics) {
+    if (metric.place == Metric::Place::kMeasure) AddValue(ValueOf(metric, facts, {}), out);
+  }
+  return out;
+}
+
+void WriteRoundRecord(const RoundRecord& record, const std::string& folder) {
+  const fs::path out(folder);
+  std::vector<Json> picks, timings;
+  for (const AttemptRecord& attempt : record.attempts) picks.push_back(ToJson(attempt, RowPlace()));
+  for (const AttemptTiming& timing : record.timings) timings.push_back(ToJson(timing, RowPlace()));
+  WriteJsonLines(picks, (out / "picks.jsonl").string());
+  WriteJsonLines(timings, (out / "timings.jsonl").string());
+  WriteJsonFile(RoundSummaryJson(record), (out / "summary.json").string());
+}
+
+RoundRecord ReadRoundRecord(const std::string& folder) {
+  const fs::path at(folder);
+  RoundRecord record;
+  const std::string file = (at / "summary.json").string();
+  const Json summary = ReadJsonFile(file);
+  record.summary = SummaryFromJson(JsonView(summary, file));
+  ReadJsonLines((at / "picks.jsonl").string(),
+                [&](const JsonView& row) { record.attempts.push_back(AttemptFromJson(row)); });
+  const std::string timings = (at / "timings.jsonl").string();
+  if (!fs::exists(timings)) return record;
+  ReadJsonLines(timings,
+                [&](const JsonView& row) { record.timings.push_back(TimingFromJson(row)); });
+  return record;
 }
 
 Json Manifest(const Scenario& scenario, const std::string& resolved_toml,

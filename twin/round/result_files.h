@@ -1,9 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "models/base/json_fwd.h"
+#include "twin/round/metric.h"
+#include "twin/round/round_record.h"
 #include "twin/round/scenario.h"
 
 namespace tubetwin {
@@ -18,6 +21,16 @@ void ClaimResultFolder(const std::string& folder, const std::string& resolved_to
 
 /// One JSON object per line, each without line breaks; written atomically.
 void WriteJsonLines(const std::vector<Json>& rows, const std::string& path);
+/// Hands each object of such a file to `use`; its source names file and line. Throws
+/// Error(kMissing | kBadData).
+void ReadJsonLines(const std::string& path, const std::function<void(const JsonView& row)>& use);
+
+/// Writes picks.jsonl, timings.jsonl and summary.json of a round's own folder.
+void WriteRoundRecord(const RoundRecord& record, const std::string& folder);
+/// Reads them back; timings may be missing. Throws Error(kMissing | kBadData).
+RoundRecord ReadRoundRecord(const std::string& folder);
+/// Content of a round's summary.json: the summary, and behind it the measures that `metrics` add.
+Json RoundSummaryJson(const RoundRecord& record, const std::vector<Metric>& metrics = Metrics());
 
 /// manifest.json: versions, seeds, machine, fingerprint of the configuration, start time. The one
 /// file besides timings.jsonl that holds what a clock or a machine said.

@@ -25,9 +25,8 @@ double WallNow() {
 
 /// The cell and the scorer of a stored round, as they were where it was stored.
 void Resume(const RoundCheckpoint& held, TwinCell& twin, TwinRoundRecorder& recorder) {
-  const JsonView view = JsonView(held.document, held.file).Field("held");
-  twin.Restore(view.Field("cell"));
-  recorder.Resume(view.Field("scorer"));
+  twin.Restore(held.cell());
+  recorder.Resume(held.scorer);
 }
 
 /// Recording, film and report.
@@ -38,9 +37,9 @@ void WriteRecord(const TwinRoundRecorder& recorder, const RoundOptions& options)
     if (options.progress) options.progress("drawing the film");
     RenderPicture(recorder.recording(), 0, (out / "picture.png").string());
     RenderFilm(recorder.recording(), (out / "video.mp4").string(), 1, options.parallelism);
-    for (std::size_t i = 0; i < recorder.rows.size(); ++i) {
-      if (recorder.rows[i]["success"] == true) continue;
-      DrawFailurePicture(recorder.recording(), static_cast<int>(i), recorder.rows[i],
+    for (std::size_t i = 0; i < recorder.attempts.size(); ++i) {
+      if (recorder.attempts[i].success == true) continue;
+      DrawFailurePicture(recorder.recording(), static_cast<int>(i), recorder.attempts[i],
                          options.out_folder);
     }
   }
@@ -76,7 +75,7 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
   }
   Cell& cell = cell_recorder ? cell_recorder->cell() : plain;
   const RoundReport report = pipeline.held
-                                 ? ResumeAttempt(cell, setup, HeldCycle(*pipeline.held), recorder)
+                                 ? ResumeAttempt(cell, setup, pipeline.held->cycle, recorder)
                                  : RunPickCycle(cell, setup, recorder);
   if (cell_recorder) EndRecording(*cell_recorder, report);
   if (options.replay != nullptr) EndReplay(*options.replay, report);
@@ -84,12 +83,11 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
   RoundResult result;
   result.interrupted = report.end == RoundEnd::kInterrupted;
   result.faulted = report.end == RoundEnd::kFault;
-  result.summary = recorder.Summary(report, Seconds(plain.clock.Now()));
-  result.rows = recorder.rows;
-  result.timings = recorder.timings;
-  WriteJsonLines(result.rows, (out / "picks.jsonl").string());
-  WriteJsonLines(result.timings, (out / "timings.jsonl").string());
-  WriteJsonFile(result.summary, (out / "summary.json").string());
+  result.record.seed = pipeline.scenario.seed;
+  result.record.summary = recorder.Summary(report, Seconds(plain.clock.Now()));
+  result.record.attempts = recorder.attempts;
+  result.record.timings = recorder.timings;
+  WriteRoundRecord(result.record, options.out_folder);
   return result;
 }
 
@@ -143,7 +141,7 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
 
   TwinRoundRecorder recorder(twin, pile, std::move(visuals), options);
   fs::remove(out / kRoundCheckpointFile);
-  recorder.on_several = [&](const AttemptCheckpoint& state, const Json& scorer) {
+  recorder.on_several = [&](const AttemptCheckpoint& state, const ScorerState& scorer) {
     twin.WakeAll();  // Whether it is stored or not: both go on alike.
     if (!scenario.cycle.end_at_several) return;
     SaveRoundCheckpoint(pile, scenario.seed, twin.State(), state, scorer,

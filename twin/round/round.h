@@ -2,13 +2,12 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "hw_bridge/cell/cell.h"
 #include "hw_bridge/recording/replay_cell.h"
-#include "models/base/json.h"
 #include "models/base/parallel.h"
 #include "planner/cycle/pick_cycle.h"
+#include "twin/round/round_record.h"
 #include "twin/round/scenario.h"
 
 namespace tubetwin {
@@ -44,8 +43,7 @@ struct RoundOptions {
 
 /// What a round came to.
 struct RoundResult {
-  Json summary;                     ///< Content of summary.json.
-  std::vector<Json> rows, timings;  ///< Of picks.jsonl and timings.jsonl.
+  RoundRecord record;  ///< As in its folder.
   bool interrupted = false;
   bool faulted = false;  ///< A device ended it.
 };

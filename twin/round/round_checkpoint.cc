@@ -10,14 +10,14 @@ namespace tubetwin {
 namespace fs = std::filesystem;
 
 void SaveRoundCheckpoint(const Pile& start, std::int64_t seed, const Json& cell,
-                         const AttemptCheckpoint& cycle, const Json& scorer,
+                         const AttemptCheckpoint& cycle, const ScorerState& scorer,
                          const std::string& path) {
   const fs::path half = path + ".half";  // Never seen as a state.
   SavePile(start, half.string());
   Json document = ReadJsonFile(half.string());
   fs::remove(half);
   document["held"] =
-      Json{{"seed", seed}, {"cell", cell}, {"cycle", ToJson(cycle)}, {"scorer", scorer}};
+      Json{{"seed", seed}, {"cell", cell}, {"cycle", ToJson(cycle)}, {"scorer", ToJson(scorer)}};
   WriteJsonFile(document, path);
 }
 
@@ -29,7 +29,10 @@ std::optional<RoundCheckpoint> ReadRoundCheckpoint(const Scenario& scenario,
   held.file = (file.is_relative() ? fs::path(folder) / file : file).string();
   held.document = ReadJsonFile(held.file);
   if (!held.document.is_object() || !held.document.contains("held")) return std::nullopt;
-  held.seed = JsonView(held.document, held.file).Field("held").Field("seed").AsInteger();
+  const JsonView stored = JsonView(held.document, held.file).Field("held");
+  held.seed = stored.Field("seed").AsInteger();
+  held.cycle = AttemptCheckpointFromJson(stored.Field("cycle"));
+  held.scorer = ScorerStateFromJson(stored.Field("scorer"));
   return held;
 }
 

@@ -9,6 +9,7 @@
 #include "planner/cycle/attempt_checkpoint.h"
 #include "scenes/pile.h"
 #include "twin/round/scenario.h"
+#include "twin/round/scoring.h"
 
 namespace tubetwin {
 
@@ -16,13 +17,17 @@ namespace tubetwin {
 /// start, which the cell is built from) with one more key, `held`: {seed, cell, cycle, scorer}.
 struct RoundCheckpoint {
   std::int64_t seed = 0;  ///< Of the stored round; physics and noise are drawn from it.
-  std::string file;       ///< For messages.
-  Json document;
+  AttemptCheckpoint cycle;
+  ScorerState scorer;
+  std::string file;  ///< For messages.
+  Json document;     ///< The whole file; the cell reads its own state from it.
+
+  JsonView cell() const { return JsonView(document, file).Field("held").Field("cell"); }
 };
 
 /// Writes such a file.
 void SaveRoundCheckpoint(const Pile& start, std::int64_t seed, const Json& cell,
-                         const AttemptCheckpoint& cycle, const Json& scorer,
+                         const AttemptCheckpoint& cycle, const ScorerState& scorer,
                          const std::string& path);
 
 /// The stored round that the scenario's pile file is, or nothing for any other pile or none.

@@ -1,29 +1,30 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "models/base/json.h"
+#include "twin/round/attempt_record.h"
+#include "twin/round/round_summary.h"
 
 namespace tubetwin {
 
-/// What one round of a campaign left: the unit that is run, saved, merged and resampled.
+/// What one round left: the unit that is run, saved, merged, resampled and reported. A round on its
+/// own is round 0 of variant 0.
 struct RoundRecord {
-  int arm = 0;
+  int variant = 0;
   int round = 0;
   std::int64_t seed = 0;
-  Json summary;               ///< As summary.json of one round; crash rounds: FaultSummary().
-  std::vector<Json> picks;    ///< Rows of picks.jsonl, with `arm` and `round`.
-  std::vector<Json> timings;  ///< Rows of timings.jsonl, likewise.
+  RoundSummary summary;
+  std::vector<AttemptRecord> attempts;
+  std::vector<AttemptTiming> timings;  ///< One for each attempt, or none where nobody kept them.
 };
 
-/// Row of picks.jsonl for a round whose process left none: outcome "fault", no success, every other
-/// field null. It stands for the round's first attempt.
-Json FaultRow(const std::string& reason);
-/// Its row of timings.jsonl.
-Json FaultTimingRow(double wall_s);
-/// Its summary: nothing placed, end_reason "crashed".
-Json FaultSummary(int tubes_start, const std::string& reason);
-bool IsFaultSummary(const Json& summary);
+/// "arm 0 round 5", as messages name it.
+std::string NameOf(const RoundRecord& record);
+
+/// What stands for a round whose process left nothing: one attempt with outcome "fault" and no
+/// success, nothing placed, no end. Overwrites all but variant, round and seed.
+void SetCrashed(int tubes_start, const std::string& reason, double wall_s, RoundRecord& record);
 
 }  // namespace tubetwin

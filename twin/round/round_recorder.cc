@@ -28,31 +28,30 @@ void RoundRecorder::OnStep(const std::string& caption) {
   if (tape != nullptr) tape->Caption(caption);
   if (options_.replay != nullptr) options_.replay->Caption(caption);
   if (options_.progress) {
-    options_.progress("attempt " + std::to_string(rows.size() + 1) + ": " + caption);
+    options_.progress("attempt " + std::to_string(attempts.size() + 1) + ": " + caption);
   }
 }
 
 void RoundRecorder::OnAttemptEnd(const AttemptReport& report) {
-  rows.push_back(scorer_.AttemptRow(report, 0));
+  attempts.push_back(scorer_.Score(report));
   if (tape != nullptr) tape->Result(BelievedAttempt(report));
   if (options_.replay != nullptr) options_.replay->Result(BelievedAttempt(report));
   const double now = WallNow();
-  timings.push_back(RoundScorer::TimingRow(report, 0, now - attempt_began_));
+  timings.push_back({report.attempt, report.compute_s, now - attempt_began_});
   attempt_began_ = now;
-  const Json& row = rows.back();
-  const bool failed = row["success"].is_null() ? row["outcome"] != "placed" : !row["success"];
+  const bool failed = !attempts.back().success.value_or(report.outcome == AttemptOutcome::kPlaced);
   if (options_.keep != RoundKeep::kRows && failed) SaveFailure();
 }
 
 bool RoundRecorder::AnyFailure() const {
-  return std::any_of(rows.begin(), rows.end(),
-                     [](const Json& row) { return row["success"] != true; });
+  return std::any_of(attempts.begin(), attempts.end(),
+                     [](const AttemptRecord& attempt) { return attempt.success != true; });
 }
 
 void RoundRecorder::SaveFailure() {
-  const std::string name = FailureFolderName(static_cast<int>(rows.size()) - 1);
+  const std::string name = FailureFolderName(static_cast<int>(attempts.size()) - 1);
   const std::string folder = (fs::path(options_.out_folder) / "failures" / name).string();
-  WriteJsonFile(rows.back(), folder + "/attempt.json");
+  WriteJsonFile(ToJson(attempts.back(), RowPlace()), folder + "/attempt.json");
   OnFailure(folder);
   for (std::size_t i = 0; i < last_views_.size(); ++i) {
     WritePcd(last_views_[i], folder + "/view_" + std::to_string(i) + ".pcd");
@@ -62,7 +61,9 @@ void RoundRecorder::SaveFailure() {
 TwinRoundRecorder::TwinRoundRecorder(TwinCell& twin, const Pile& pile,
                                      std::vector<Recording::Visual> visuals,
                                      const RoundOptions& options)
-    : RoundRecorder(RoundScorer(twin, static_cast<int>(pile.tubes.size())), options), twin_(twin) {
+    : RoundRecorder(RoundScorer(twin, twin.cell().layout, static_cast<int>(pile.tubes.size())),
+                    options),
+      twin_(twin) {
   recording_.cell_xml = twin.ModelXml();
   recording_.bin = pile.bin;
   recording_.visuals = std::move(visuals);

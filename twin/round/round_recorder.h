@@ -13,8 +13,8 @@
 
 namespace tubetwin {
 
-/// Follows one round on any cell: rows, timings, the clouds of failed attempts. Lives as long as
-/// the round.
+/// Follows one round on any cell: records of attempts, the clouds of failed attempts. Lives as long
+/// as the round.
 class RoundRecorder : public CycleObserver {
  public:
   RoundRecorder(RoundScorer scorer, const RoundOptions& options);
@@ -24,12 +24,13 @@ class RoundRecorder : public CycleObserver {
   void OnDetection(const Detection&) override { scorer_.AtDetection(); }
   void OnAttemptEnd(const AttemptReport& report) override;
 
-  Json Summary(const RoundReport& report, double sim_s) const {
-    return scorer_.Summary(report, sim_s);
+  RoundSummary Summary(const RoundReport& report, double sim_s) const {
+    return scorer_.Summary(report, attempts, sim_s);
   }
   bool AnyFailure() const;
 
-  std::vector<Json> rows, timings;
+  std::vector<AttemptRecord> attempts;
+  std::vector<AttemptTiming> timings;
   CellRecorder* tape = nullptr;  ///< Of the cell; null: it is not recorded.
 
  protected:
@@ -54,14 +55,14 @@ class TwinRoundRecorder : public RoundRecorder {
   void OnStep(const std::string& caption) override;
   void OnScene(const TubeScene& scene, const PickPlan* plan) override;
   void OnReference(const Wrench& reference_K) override;
-  void OnSeveral(const AttemptCheckpoint& state) override { on_several(state, scorer_.State()); }
+  void OnSeveral(const AttemptCheckpoint& state) override { on_several(state, scorer_.state()); }
   void OnAttemptEnd(const AttemptReport& report) override;
 
-  void Resume(const JsonView& scorer) { scorer_.Restore(scorer); }
+  void Resume(const ScorerState& scorer) { scorer_.Restore(scorer); }
   const Recording& recording() const { return recording_; }
 
   /// Told of the moment when several hang, with the scorer's state.
-  std::function<void(const AttemptCheckpoint&, const Json&)> on_several;
+  std::function<void(const AttemptCheckpoint&, const ScorerState&)> on_several;
 
  private:
   void OnFailure(const std::string& folder) override;

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "models/base/json.h"
-#include "planner/cycle/attempt_report.h"
+#include "models/base/json_fwd.h"
 #include "twin/cell/truth.h"
+#include "twin/round/round_record.h"
 
 namespace tubetwin {
 
@@ -22,39 +21,44 @@ struct TrayCount {
 /// that was placed before and has not left the tray: a new neighbour may make it rock.
 TrayCount CountTray(const std::vector<Truth::Tube>& tubes, const TrayCount& before);
 
+/// What the scoring of attempts to come depends on, and a stored round goes on with.
+struct ScorerState {
+  TrayCount tray;
+  std::vector<int> outside_ids;
+};
+Json ToJson(const ScorerState& state);
+/// Throws Error(kBadData).
+ScorerState ScorerStateFromJson(const JsonView& view);
+
 /// Scores attempts while a round runs: by truth, or, of a cell without truth, by what the pipeline
-/// believes; `success` and `truth` of its rows are null then, and summaries say `scored_by`. The
-/// one place, with the round itself, that sees truth.
+/// believes; `success` and `truth` of its records are empty then. The one place, with the round
+/// itself, that sees truth.
 class RoundScorer {
  public:
-  RoundScorer(const TwinCell& cell, int tubes_start);
+  RoundScorer(const TwinCell& cell, const CellLayout& layout, int tubes_start);
   RoundScorer() = default;  ///< Of a cell without truth.
 
-  /// What rows to come depend on: {placed_ids, arrived_ids, outside_ids}, and back.
-  Json State() const;
-  void Restore(const JsonView& state);
+  const ScorerState& state() const { return now_; }
+  /// Goes on where a stored round was.
+  void Restore(const ScorerState& state);
 
   /// At the decision how many tubes hang in the fingers.
   void AtDetection();
   /// At the end of an attempt (at least one second after a release): its row for picks.jsonl.
-  Json AttemptRow(const AttemptReport& report, int round);
-  /// Row for timings.jsonl.
-  static Json TimingRow(const AttemptReport& report, int round, double wall_s);
-  /// Content of summary.json after the last attempt.
-  Json Summary(const RoundReport& report, double sim_s) const;
+  AttemptRecord Score(const AttemptReport& report);
+  /// After the last attempt. `attempts`: all of the round's.
+  RoundSummary Summary(const RoundReport& report, const std::vector<AttemptRecord>& attempts,
+                       double sim_s) const;
 
  private:
+  AttemptTruth TruthAfter(const AttemptReport& report, bool& success);
+
   std::optional<Truth> truth_;
-  int tubes_start_ = 0;                         ///< Without truth: what the first look found.
-  int placed_before_ = 0, outside_before_ = 0;  ///< Of a restored round.
+  RigidTransform X_TB_ = RigidTransform::Identity();
+  std::optional<int> tubes_start_;  ///< Without truth: what the first look found.
   int held_at_detection_ = 0;
-  TrayCount tray_;
-  std::vector<int> outside_ids_;
-  int attempts_ = 0, successes_ = 0;
-  int first_attempts_placed_ = 0;  ///< Placed by truth at attempt 1.
-  int picks_placed_ = 0;           ///< Attempts that placed exactly one, by truth.
-  int dropped_ = 0;
-  std::vector<Json> rows_;
+  ScorerState before_;  ///< When the round began.
+  ScorerState now_;
 };
 
 }  // namespace tubetwin

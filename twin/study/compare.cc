@@ -1,184 +1,171 @@
 #include "twin/study/compare.h"
 
 #include <cmath>
-#include <cstdio>
+#include <functional>
+#include <limits>
 #include <map>
 
 #include "models/base/error.h"
-#include "models/base/json.h"
-#include "twin/campaign/campaign_summary.h"
 #include "twin/round/attempt_facts.h"
 
 namespace tubetwin {
 namespace {
 
-/// What one round contributes to the comparison.
-struct RoundScore {
-  bool first_pick = false, flawless = false, emptied = false;
-  Counts success, first_attempt, resolution;
-  double sim_s = 0.0;
-  int placed = 0;
+/// The rounds of each seed, A's and B's: index i of both is a pair.
+struct Sides {
+  std::vector<RoundFacts> a, b;
 };
 
-RoundScore ScoreOf(const RoundRecord& record) {
-  RoundScore out;
-  const std::vector<AttemptFacts> all = FactsOf(record);
-  out.emptied = record.summary["emptied"] == true;
-  out.first_pick = !all.empty() && all.front().success;
-  out.flawless = out.emptied;
-  for (const AttemptFacts& facts : all) {
-    out.flawless = out.flawless && facts.success;
-    ++out.success.n;
-    out.success.k += facts.success ? 1 : 0;
-    out.first_attempt.n += facts.success ? 1 : 0;
-    out.first_attempt.k += facts.success && facts.first ? 1 : 0;
-    if ((*facts.row)["resolution"]["used"] == true) {
-      ++out.resolution.n;
-      out.resolution.k += facts.success ? 1 : 0;
-    }
+/// Indices of the pairs that a resampling drew, and a number of one side over them.
+using Drawn = std::vector<int>;
+using Measure = std::function<double(const Drawn&, const std::vector<MetricSample>&)>;
+
+bool FirstPick(const RoundFacts& round) {
+  return !round.attempts.empty() && round.attempts.front().success;
+}
+
+bool Emptied(const RoundFacts& round) { return round.record->summary.emptied; }
+
+bool Flawless(const RoundFacts& round) {
+  bool good = Emptied(round);
+  for (const AttemptFacts& facts : round.attempts) good = good && facts.success;
+  return good;
+}
+
+QuestionResult Ask(const char* name, bool (*answer)(const RoundFacts&), const Sides& sides) {
+  QuestionResult out;
+  out.question = name;
+  for (std::size_t i = 0; i < sides.a.size(); ++i) {
+    const bool a = answer(sides.a[i]), b = answer(sides.b[i]);
+    ++(a ? (b ? out.both : out.only_a) : (b ? out.only_b : out.neither));
   }
-  const Json& sim_s = record.summary["sim_s"];
-  if (sim_s.is_number()) {
-    out.sim_s = sim_s;
-    out.placed = record.summary["placed"];
-  }
+  out.p = McNemarExact(out.only_a, out.only_b);
   return out;
 }
 
-using Scores = std::vector<std::pair<RoundScore, RoundScore>>;  ///< A and B of each seed.
-using Answer = bool RoundScore::*;
-using Share = Counts RoundScore::*;
-
-Json McNemarJson(const char* name, Answer answer, const Scores& scores) {
-  int both = 0, only_a = 0, only_b = 0, neither = 0;
-  for (const auto& [a, b] : scores) {
-    if (a.*answer) {
-      ++(b.*answer ? both : only_a);
-    } else {
-      ++(b.*answer ? only_b : neither);
-    }
+double ShareOf(const Drawn& drawn, const std::vector<MetricSample>& side) {
+  double k = 0.0, n = 0.0;
+  for (const int i : drawn) {
+    k += side[i].counts.k;
+    n += side[i].counts.n;
   }
-  const int n = static_cast<int>(scores.size());
-  return Json{{"question", name},
-              {"a", RateJson(Counts{both + only_a, n})},
-              {"b", RateJson(Counts{both + only_b, n})},
-              {"both", both},
-              {"only_a", only_a},
-              {"only_b", only_b},
-              {"neither", neither},
-              {"p", McNemarExact(only_a, only_b)}};
+  return k / n;  // No trial: not a number, left out.
 }
 
-Json Finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+double MiddleOf(Metric::Kind kind, const Drawn& drawn, const std::vector<MetricSample>& side) {
+  std::vector<double> values;
+  for (const int i : drawn) {
+    values.insert(values.end(), side[i].values.begin(), side[i].values.end());
+  }
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const Spread spread = SpreadOf(values);
+  return kind == Metric::Kind::kMean ? spread.mean : spread.median;
+}
 
-/// B - A of `measure(sum over rounds)`, with a bootstrap over pairs of rounds.
-template <class Measure>
-Json DifferenceJson(const Scores& scores, const RandomStream& random, const Measure& measure) {
-  const auto difference = [&](const std::vector<int>& drawn) {
-    return measure(drawn, &Scores::value_type::second) - measure(drawn, &Scores::value_type::first);
-  };
-  std::vector<int> all(scores.size());
+Difference DifferenceOf(const std::vector<MetricSample>& a, const std::vector<MetricSample>& b,
+                        const Measure& measure, const RandomStream& random) {
+  const auto difference = [&](const Drawn& drawn) { return measure(drawn, b) - measure(drawn, a); };
+  Drawn all(a.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-  const Interval interval = Bootstrap95(static_cast<int>(scores.size()), difference, random);
-  return Json{{"b_minus_a", Finite(difference(all))},
-              {"bootstrap95", Json::array({Finite(interval.low), Finite(interval.high)})}};
+  return {difference(all), Bootstrap95(static_cast<int>(a.size()), difference, random)};
 }
 
-Json ShareDifference(Share share, const Scores& scores, const RandomStream& random) {
-  Json out = DifferenceJson(scores, random, [&](const std::vector<int>& drawn, auto side) {
-    double k = 0.0, n = 0.0;
-    for (const int i : drawn) {
-      k += (scores[i].*side.*share).k;
-      n += (scores[i].*side.*share).n;
-    }
-    return k / n;
-  });
-  std::vector<Counts> a, b;
-  for (const auto& [of_a, of_b] : scores) {
-    a.push_back(of_a.*share);
-    b.push_back(of_b.*share);
-  }
-  out["a"] = RateJson(a, random.Fork("a"));
-  out["b"] = RateJson(b, random.Fork("b"));
+std::vector<MetricSample> SamplesOf(const Metric& metric, const std::vector<RoundFacts>& rounds) {
+  std::vector<MetricSample> out;
+  for (const RoundFacts& round : rounds) out.push_back(metric.reduce(round));
   return out;
 }
 
-Json TimeDifference(const Scores& scores, const RandomStream& random) {
-  return DifferenceJson(scores, random, [&](const std::vector<int>& drawn, auto side) {
-    double sim_s = 0.0, placed = 0.0;
-    for (const int i : drawn) {
-      sim_s += (scores[i].*side).sim_s;
-      placed += (scores[i].*side).placed;
-    }
-    return sim_s / placed;
-  });
+MetricDifference CompareMetric(const Metric& metric, const Sides& sides,
+                               const RandomStream& random) {
+  const Measure measure = metric.kind == Metric::Kind::kRate
+                              ? Measure(ShareOf)
+                              : [kind = metric.kind](const Drawn& drawn, const auto& side) {
+                                  return MiddleOf(kind, drawn, side);
+                                };
+  const auto side_of = [&](const std::vector<RoundFacts>& rounds, const char* name) {
+    MetricValue value = ValueOf(metric, rounds, std::nullopt);
+    if (metric.kind != Metric::Kind::kRate) return value;
+    std::vector<Counts> counts;
+    for (const MetricSample& sample : SamplesOf(metric, rounds)) counts.push_back(sample.counts);
+    value.rate = RateOf(counts, random.Fork(name));
+    return value;
+  };
+  return {side_of(sides.a, "a"), side_of(sides.b, "b"),
+          DifferenceOf(SamplesOf(metric, sides.a), SamplesOf(metric, sides.b), measure, random)};
 }
 
-Json ComparePair(const ArmPair& pair, std::uint64_t index) {
+/// Of each round that did not crash its simulated time and what it placed.
+std::vector<MetricSample> TimesAndPlaced(const std::vector<RoundFacts>& rounds) {
+  std::vector<MetricSample> out;
+  for (const RoundFacts& round : rounds) {
+    const RoundSummary& summary = round.record->summary;
+    out.push_back({{0, summary.sim_s ? summary.placed : 0}, {summary.sim_s.value_or(0.0)}});
+  }
+  return out;
+}
+
+double SecondsPerTube(const Drawn& drawn, const std::vector<MetricSample>& side) {
+  double sim_s = 0.0, placed = 0.0;
+  for (const int i : drawn) {
+    sim_s += side[i].values.front();
+    placed += side[i].counts.n;
+  }
+  return sim_s / placed;
+}
+
+PairComparison ComparePair(const VariantPair& pair, std::uint64_t index,
+                           const std::vector<Metric>& metrics) {
   std::map<std::int64_t, const RoundRecord*> of_b;
-  for (const RoundRecord* record : pair.b.result->OfArm(pair.b.arm)) of_b[record->seed] = record;
-  Scores scores;
-  const auto of_a = pair.a.result->OfArm(pair.a.arm);
-  for (const RoundRecord* record : of_a) {
+  const auto records_b = pair.b.result->OfVariant(pair.b.variant);
+  for (const RoundRecord* record : records_b) of_b[record->seed] = record;
+  Sides sides;
+  const auto records_a = pair.a.result->OfVariant(pair.a.variant);
+  for (const RoundRecord* record : records_a) {
     const auto partner = of_b.find(record->seed);
     if (partner == of_b.end()) continue;
-    scores.emplace_back(ScoreOf(*record), ScoreOf(*partner->second));
+    sides.a.push_back(FactsOf(*record));
+    sides.b.push_back(FactsOf(*partner->second));
   }
-  if (scores.empty()) {
+  if (sides.a.empty()) {
     throw Error(ErrorKind::kBadData,
                 pair.a.name + " and " + pair.b.name +
                     " have no seed in common: paired comparison needs campaigns of one seed");
   }
   const RandomStream random =
-      RandomStream(pair.a.result->identity["seed"].get<std::uint64_t>(), 0, "compare")
+      RandomStream(static_cast<std::uint64_t>(pair.a.result->identity.seed), 0, "compare")
           .Fork("pair", index);
-  Json out;
-  out["a"] = pair.a.name;
-  out["b"] = pair.b.name;
-  out["pairs"] = scores.size();
-  out["unpaired_a"] = of_a.size() - scores.size();
-  out["unpaired_b"] = of_b.size() - scores.size();
-  out["tests"] = Json::array({McNemarJson("first_pick", &RoundScore::first_pick, scores),
-                              McNemarJson("flawless", &RoundScore::flawless, scores),
-                              McNemarJson("emptied", &RoundScore::emptied, scores)});
-  out["success"] = ShareDifference(&RoundScore::success, scores, random.Fork("success"));
-  out["first_attempt"] = ShareDifference(&RoundScore::first_attempt, scores, random.Fork("first"));
-  out["resolution"] = ShareDifference(&RoundScore::resolution, scores, random.Fork("resolution"));
-  out["sim_s_per_placed_tube"] = TimeDifference(scores, random.Fork("time"));
+  PairComparison out;
+  out.a = pair.a.name;
+  out.b = pair.b.name;
+  out.pairs = static_cast<int>(sides.a.size());
+  out.unpaired_a = static_cast<int>(records_a.size()) - out.pairs;
+  out.unpaired_b = static_cast<int>(of_b.size()) - out.pairs;
+  out.questions = {Ask("first_pick", FirstPick, sides), Ask("flawless", Flawless, sides),
+                   Ask("emptied", Emptied, sides)};
+  for (const Metric& metric : metrics) {
+    if (metric.compared.empty()) continue;
+    out.metrics.push_back(CompareMetric(metric, sides, random.Fork(metric.stream)));
+  }
+  out.sim_s_per_placed_tube = DifferenceOf(TimesAndPlaced(sides.a), TimesAndPlaced(sides.b),
+                                           SecondsPerTube, random.Fork("time"));
   return out;
-}
-
-std::string Percent(const Json& rate) {
-  const int k = rate["k"], n = rate["n"];
-  char text[64];
-  std::snprintf(text, sizeof text, "%d/%d = %.1f %%", k, n, n > 0 ? 100.0 * k / n : 0.0);
-  return text;
-}
-
-std::string DifferenceText(const Json& difference, double scale, const char* unit) {
-  const Json& interval = difference["bootstrap95"];
-  if (difference["b_minus_a"].is_null() || interval[0].is_null()) return "not known";
-  char text[96];
-  std::snprintf(text, sizeof text, "%+.1f %s [%+.1f, %+.1f]",
-                scale * difference["b_minus_a"].get<double>(), unit,
-                scale * interval[0].get<double>(), scale * interval[1].get<double>());
-  return text;
 }
 
 }  // namespace
 
-std::vector<ArmPair> PairArms(const CampaignResult& a, const CampaignResult& b) {
-  const auto choice = [](const CampaignResult& result, int arm) {
-    return ArmChoice{&result, arm, result.ArmName(arm)};
+std::vector<VariantPair> PairVariants(const CampaignResult& a, const CampaignResult& b) {
+  const auto choice = [](const CampaignResult& result, int variant) {
+    return VariantChoice{&result, variant, result.VariantName(variant)};
   };
-  std::vector<ArmPair> out;
-  if (a.arms() != b.arms() && a.arms() != 1 && b.arms() != 1) {
-    throw Error(ErrorKind::kBadData, "A has " + std::to_string(a.arms()) + " arms and B has " +
-                                         std::to_string(b.arms()) +
+  std::vector<VariantPair> out;
+  if (a.variants() != b.variants() && a.variants() != 1 && b.variants() != 1) {
+    throw Error(ErrorKind::kBadData, "A has " + std::to_string(a.variants()) +
+                                         " variants and B has " + std::to_string(b.variants()) +
                                          "; equally many are needed, or one against all");
   }
-  for (int i = 0; i < std::max(a.arms(), b.arms()); ++i) {
-    out.push_back({choice(a, a.arms() == 1 ? 0 : i), choice(b, b.arms() == 1 ? 0 : i)});
+  for (int i = 0; i < std::max(a.variants(), b.variants()); ++i) {
+    out.push_back({choice(a, a.variants() == 1 ? 0 : i), choice(b, b.variants() == 1 ? 0 : i)});
     if (out.back().a.name == out.back().b.name) {
       out.back().a.name += " (A)";
       out.back().b.name += " (B)";
@@ -187,65 +174,32 @@ std::vector<ArmPair> PairArms(const CampaignResult& a, const CampaignResult& b) 
   return out;
 }
 
-std::vector<ArmPair> PairArmsWithin(const CampaignResult& result) {
-  if (result.arms() < 2) {
-    throw Error(ErrorKind::kBadData, "the campaign has one arm ('" + result.ArmName(0) +
+std::vector<VariantPair> PairVariantsWithin(const CampaignResult& result) {
+  if (result.variants() < 2) {
+    throw Error(ErrorKind::kBadData, "the campaign has one variant ('" + result.VariantName(0) +
                                          "'); name a second campaign to compare it with");
   }
-  std::vector<ArmPair> out;
-  for (int i = 0; i < result.arms(); ++i) {
-    for (int j = i + 1; j < result.arms(); ++j) {
-      out.push_back({{&result, i, result.ArmName(i)}, {&result, j, result.ArmName(j)}});
+  std::vector<VariantPair> out;
+  for (int i = 0; i < result.variants(); ++i) {
+    for (int j = i + 1; j < result.variants(); ++j) {
+      out.push_back({{&result, i, result.VariantName(i)}, {&result, j, result.VariantName(j)}});
     }
   }
   return out;
 }
 
-Json CompareArms(const std::vector<ArmPair>& pairs) {
-  Json out;
-  out["schema"] = "tubetwin/comparison/1";
-  out["pairs"] = Json::array();
+Comparison CompareVariants(const std::vector<VariantPair>& pairs,
+                           const std::vector<Metric>& metrics) {
+  Comparison out;
   std::vector<double> p_values;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    out["pairs"].push_back(ComparePair(pairs[i], i));
-    for (const Json& test : out["pairs"].back()["tests"]) p_values.push_back(test["p"]);
+    out.pairs.push_back(ComparePair(pairs[i], i, metrics));
+    for (const QuestionResult& test : out.pairs.back().questions) p_values.push_back(test.p);
   }
   const std::vector<double> adjusted = HolmAdjusted(p_values);
   std::size_t next = 0;
-  for (Json& pair : out["pairs"]) {
-    for (Json& test : pair["tests"]) test["p_holm"] = adjusted[next++];
-  }
-  out["tests"] = p_values.size();
-  return out;
-}
-
-std::string CompareText(const Json& comparison) {
-  std::string out;
-  for (const Json& pair : comparison["pairs"]) {
-    out += "A = " + pair["a"].get<std::string>() + "\nB = " + pair["b"].get<std::string>() + "\n" +
-           std::to_string(pair["pairs"].get<int>()) + " pairs of rounds with the same seed";
-    const int left = pair["unpaired_a"].get<int>() + pair["unpaired_b"].get<int>();
-    if (left > 0) out += ", " + std::to_string(left) + " rounds without a partner left out";
-    out += "\n";
-    for (const Json& test : pair["tests"]) {
-      char text[256];
-      std::snprintf(text, sizeof text,
-                    "  %-11s A %-18s B %-18s only A %d, only B %d, McNemar p = %.4g, Holm %.4g\n",
-                    test["question"].get<std::string>().c_str(), Percent(test["a"]).c_str(),
-                    Percent(test["b"]).c_str(), test["only_a"].get<int>(),
-                    test["only_b"].get<int>(), test["p"].get<double>(),
-                    test["p_holm"].get<double>());
-      out += text;
-    }
-    for (const char* rate : {"success", "first_attempt", "resolution"}) {
-      char text[256];
-      std::snprintf(text, sizeof text, "  %-21s A %-20s B %-20s B - A %s\n", rate,
-                    Percent(pair[rate]["a"]).c_str(), Percent(pair[rate]["b"]).c_str(),
-                    DifferenceText(pair[rate], 100.0, "points").c_str());
-      out += text;
-    }
-    out += "  simulated time per placed tube: B - A " +
-           DifferenceText(pair["sim_s_per_placed_tube"], 1.0, "s") + "\n";
+  for (PairComparison& pair : out.pairs) {
+    for (QuestionResult& test : pair.questions) test.p_holm = adjusted[next++];
   }
   return out;
 }

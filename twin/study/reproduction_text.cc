@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "models/base/json.h"
@@ -6,49 +7,86 @@
 namespace tubetwin {
 namespace {
 
-std::string CellText(const Json& cell) {
+std::string CellText(const ReproductionCell& cell) {
   char text[96];
-  if (cell.is_null()) return "-";
-  const int n = cell["n"];
-  if (cell.contains("mean")) {
-    std::snprintf(text, sizeof text, "%.2f ± %.2f s [%.2f, %.2f]", cell["mean"].get<double>(),
-                  cell["sd"].get<double>(), cell["mean95"][0].get<double>(),
-                  cell["mean95"][1].get<double>());
+  if (const auto* time = std::get_if<MeanTime>(&cell)) {
+    std::snprintf(text, sizeof text, "%.2f ± %.2f s [%.2f, %.2f]", time->mean_s, time->sd_s,
+                  time->mean95_s.low, time->mean95_s.high);
     return text;
   }
+  const auto* rate = std::get_if<Rate>(&cell);
+  if (rate == nullptr) return "-";
+  const auto [k, n] = rate->counts;
   if (n == 0) return "- (0)";
-  const int k = cell["k"];
+  const ShareInterval wilson = Wilson95(k, n);
   std::snprintf(text, sizeof text, "%d/%d = %.0f %% [%.0f, %.0f]", k, n, 100.0 * k / n,
-                100.0 * cell["wilson95"][0].get<double>(),
-                100.0 * cell["wilson95"][1].get<double>());
+                100.0 * wilson.low, 100.0 * wilson.high);
   return text;
 }
 
-std::string NameOf(const Json& row) {
-  std::string out = "Set " + row["set"].get<std::string>() + ", " + row["what"].get<std::string>();
-  if (row["tubes_left"].is_number()) out += ", " + row["tubes_left"].dump() + " in the bin";
+Json ToJson(const ReproductionCell& cell) {
+  if (const auto* rate = std::get_if<Rate>(&cell)) return ToJson(*rate);
+  const auto* time = std::get_if<MeanTime>(&cell);
+  if (time == nullptr) return nullptr;
+  return Json{{"n", time->n},
+              {"mean", time->mean_s},
+              {"sd", time->sd_s},
+              {"mean95", Json::array({time->mean95_s.low, time->mean95_s.high})}};
+}
+
+Json ToJson(const ReproductionRow& row) {
+  Json out{{"set", row.set}, {"what", row.what}, {"tubes_left", nullptr}};
+  if (row.tubes_left) out["tubes_left"] = *row.tubes_left;
+  out["paper"] = ToJson(row.paper);
+  for (std::size_t i = 0; i < row.ours.size(); ++i) {
+    out[kReproductionProfiles[i]] = ToJson(row.ours[i]);
+  }
+  out["apart"] = row.apart;
+  return out;
+}
+
+std::string NameOf(const ReproductionRow& row) {
+  std::string out = "Set " + row.set + ", " + row.what;
+  if (row.tubes_left) out += ", " + std::to_string(*row.tubes_left) + " in the bin";
   return out;
 }
 
 }  // namespace
 
-std::string ReproductionText(const Json& tables) {
+Json ToJson(const Reproduction& reproduction) {
+  Json out{{"schema", "tubetwin/reproduction/1"},
+           {"seed", reproduction.seed},
+           {"rounds", reproduction.rounds},
+           {"tables", Json::array()}};
+  for (const ReproductionTable& table : reproduction.tables) {
+    Json rows = Json::array();
+    for (const ReproductionRow& row : table.rows) rows.push_back(ToJson(row));
+    out["tables"].push_back(
+        Json{{"table", table.number}, {"title", table.title}, {"rows", std::move(rows)}});
+  }
+  return out;
+}
+
+std::string ReproductionText(const Reproduction& reproduction) {
   std::string out = "# Tables 3 to 9 of the 2020 paper beside the twin\n\n" +
-                    tables["rounds"].dump() + " rounds of each set and profile, seed " +
-                    tables["seed"].dump() +
+                    std::to_string(reproduction.rounds) + " rounds of each set and profile, seed " +
+                    std::to_string(reproduction.seed) +
                     ". Shares by truth with Wilson's 95 % interval, times as mean ± standard "
                     "deviation with Student's 95 % interval of the mean.\n";
   std::string apart;
-  for (const Json& table : tables["tables"]) {
-    out += "\n## Table " + table["table"].dump() + ". " + table["title"].get<std::string>() +
+  for (const ReproductionTable& table : reproduction.tables) {
+    const std::string number = std::to_string(table.number);
+    out += "\n## Table " + number + ". " + table.title +
            "\n\n| | paper | leao2020 profile | best |\n|---|---|---|---|\n";
-    for (const Json& row : table["rows"]) {
-      out += "| " + NameOf(row) + " | " + CellText(row["paper"]) + " | " +
-             CellText(row["leao2020"]) + " | " + CellText(row["best"]) + " |\n";
-      for (const Json& profile : row["apart"]) {
-        const auto name = profile.get<std::string>();
-        apart += "- Table " + table["table"].dump() + ", " + NameOf(row) + ": " + name + " " +
-                 CellText(row[name]) + ", paper " + CellText(row["paper"]) + "\n";
+    for (const ReproductionRow& row : table.rows) {
+      out += "| " + NameOf(row) + " | " + CellText(row.paper);
+      for (const ReproductionCell& cell : row.ours) out += " | " + CellText(cell);
+      out += " |\n";
+      for (std::size_t i = 0; i < row.ours.size(); ++i) {
+        const std::string profile = kReproductionProfiles[i];
+        if (std::count(row.apart.begin(), row.apart.end(), profile) == 0) continue;
+        apart += "- Table " + number + ", " + NameOf(row) + ": " + profile + " " +
+                 CellText(row.ours[i]) + ", paper " + CellText(row.paper) + "\n";
       }
     }
   }

@@ -114,9 +114,9 @@
       const step = data.times.step_s;
       const first = Math.max(
         0,
-        Math.min(...data.times.arms.map((arm) => arm.counts.findIndex((n) => n > 0)).filter((i) => i >= 0)) - 1
+        Math.min(...data.times.variants.map((variant) => variant.counts.findIndex((n) => n > 0)).filter((i) => i >= 0)) - 1
       );
-      const bins = data.times.arms[0].counts.length;
+      const bins = data.times.variants[0].counts.length;
       const labels = [];
       for (let i = first; i < bins; ++i) labels.push(String(i * step));
       const options = page.chartOptions("seconds", "attempts");
@@ -130,10 +130,10 @@
         type: "bar",
         data: {
           labels: labels,
-          datasets: data.times.arms.map(function (arm, i) {
+          datasets: data.times.variants.map(function (variant, i) {
             return {
-              label: arm.name,
-              data: arm.counts.slice(first),
+              label: variant.name,
+              data: variant.counts.slice(first),
               backgroundColor: page.colour("a" + (i % 6)),
               barPercentage: 1,
               categoryPercentage: 0.9,

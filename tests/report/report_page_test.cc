@@ -1,4 +1,4 @@
-#include "twin/report/round_page.h"
+#include "twin/report/report_page.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +11,7 @@
 #include "tests/support/temporary_folder.h"
 #include "twin/report/chart.h"
 #include "twin/report/text.h"
+#include "twin/report/write_report.h"
 #include "twin/round/result_files.h"
 
 namespace tubetwin {
@@ -18,65 +19,91 @@ namespace {
 
 using Catch::Contains;
 
-Json Summary() {
-  return Json::parse(R"({"schema": "tubetwin/summary/1", "tubes_start": 7, "placed": 6,
-      "attempts": 9, "success": {"k": 6, "n": 9, "wilson95": [0.3542, 0.8794]},
-      "first_attempt": {"k": 5, "n": 6, "wilson95": [0.4365, 0.9699]}, "emptied": false,
-      "end_reason": "no_plan", "end_detail": "tube 3 <under> the wall", "outside": 0,
-      "dropped": 1, "sim_s": 412.25, "sim_s_per_pick": 68.7})");
+RoundSummary Summary() {
+  RoundSummary summary;
+  summary.tubes_start = 7;
+  summary.placed = 6;
+  summary.attempts = 9;
+  summary.success = Counts{6, 9};
+  summary.first_attempt = {5, 6};
+  summary.end = RoundEnd::kNoPlan;
+  summary.end_detail = "tube 3 <under> the wall";
+  summary.dropped = 1;
+  summary.sim_s = 412.25;
+  return summary;
 }
 
-Json PlacedRow() {
-  return Json::parse(R"({"round": 0, "attempt": 1, "tubes_in_bin": 7, "target": 2, "class": "free",
-      "motion": {"name": "up", "waypoints_m": []}, "grasp": {}, "used_simulator": false,
-      "detection": {"outcome": "one", "force_N": 0.538, "torque_Nm": [0, 0, 0], "at_s": 1.5},
-      "resolution": {"used": false, "strategy": null, "outcome": null}, "outcome": "placed",
-      "reason": "", "success": true,
-      "sim_s": {"scan": 10, "move": 20, "weigh": 5, "settle": 1, "total": 36},
-      "truth": {"held": 1, "placed_ids": [2], "outside_ids": []}})");
+AttemptRecord Placed() {
+  AttemptRecord attempt;
+  attempt.tubes_in_bin = 7;
+  attempt.chosen.emplace();
+  attempt.chosen->target = 2;
+  attempt.chosen->motion = "up";
+  attempt.detection = Detection{HeldOutcome::kOne, 0.538, Vector3::Zero(), 1.5};
+  attempt.outcome = AttemptOutcome::kPlaced;
+  attempt.success = true;
+  attempt.sim_s = AttemptReport::SimTime{10, 20, 5, 1};
+  attempt.truth = AttemptTruth{1, {2}, {}, {}, {}};
+  return attempt;
 }
 
 /// Of a cell without truth.
-Json BareRow() {
-  return Json::parse(R"({"round": 0, "attempt": 1, "tubes_in_bin": 1, "target": null,
-      "class": null, "motion": null, "grasp": null, "used_simulator": false, "detection": null,
-      "resolution": {"used": true, "strategy": "plus45", "outcome": "several"},
-      "outcome": "no_plan", "reason": "<script>alert('x')</script> & \"more\"", "success": null,
-      "sim_s": {"scan": 10, "move": 0, "weigh": 0, "settle": 0, "total": 10}, "truth": null})");
+AttemptRecord Bare() {
+  AttemptRecord attempt;
+  attempt.tubes_in_bin = 1;
+  attempt.resolution_used = true;
+  attempt.strategy = "plus45";
+  attempt.held_at_last = HeldOutcome::kSeveral;
+  attempt.outcome = AttemptOutcome::kNoPlan;
+  attempt.reason = "<script>alert('x')</script> & \"more\"";
+  attempt.sim_s = AttemptReport::SimTime{10, 0, 0, 0};
+  return attempt;
 }
 
-RoundReportInput Input(std::vector<Json> rows) {
-  RoundReportInput input;
-  input.summary = Summary();
-  input.rows = std::move(rows);
-  return input;
+RoundRecord Round(std::vector<AttemptRecord> attempts) {
+  RoundRecord record;
+  record.summary = Summary();
+  record.attempts = std::move(attempts);
+  return record;
+}
+
+std::string Page(const RoundRecord& record, bool computing_times = false) {
+  return ReportHtml(RoundReportInput(record, computing_times), {}, RoundSummaryJson(record));
 }
 
 }  // namespace
 
-TEST_CASE("the page leads with what was placed, rates with the intervals of summary.json") {
-  const std::string html = RoundReportHtml(Input({PlacedRow()}));
+TEST_CASE("a round's page leads with what was placed, its numbers are those of summary.json") {
+  RoundRecord record = Round({Placed(), Placed(), Placed()});
+  record.attempts[1].outcome = AttemptOutcome::kNothingHeld;
+  record.attempts[1].success = false;
+  record.attempts[2].attempt = 2;
+  record.summary.success = Counts{2, 3};
+  record.summary.first_attempt = {1, 2};
+  record.summary.placed = 2;
+  record.summary.attempts = 3;
+  const std::string html = Page(record);
   const auto shown = ShownNumbers(html);
   for (const auto& [pointer, value_and_text] : shown) {
     INFO(pointer);
-    CHECK(Json::parse(value_and_text.first) == At(Summary(), pointer));
+    CHECK(Json::parse(value_and_text.first) ==
+          RoundSummaryJson(record).at(Json::json_pointer(pointer)));
   }
-  CHECK(shown.at("/placed").second == "6");
-  CHECK(shown.at("/first_attempt/k").second == "5");
-  CHECK(shown.at("/first_attempt/wilson95/0").second == "43.6");
-  CHECK(shown.at("/success/wilson95/1").second == "87.9");
+  CHECK(shown.at("/placed").second == "2");
+  CHECK(shown.at("/first_attempt/k").second == "1");
+  CHECK(shown.at("/success/wilson95/1").second == "93.9");
   CHECK(shown.at("/sim_s").second == "412.2");  // Even: as printf rounds.
-  CHECK_THAT(html, Contains("<span data-share=\"/first_attempt\">83.3</span>"));
+  CHECK_THAT(html, Contains("<span data-share=\"/first_attempt\">50.0</span>"));
   CHECK_THAT(html, Contains("The bin was not emptied."));
   CHECK(html.find("<h1>") < html.find("<h2>"));
 }
 
 TEST_CASE("every attempt has its row with what was chosen and why") {
-  Json simulated = PlacedRow();
-  simulated["used_simulator"] = true;
-  simulated["class"] = "strong";
-  simulated["motion"]["name"] = "escape";
-  const std::string html = RoundReportHtml(Input({PlacedRow(), simulated, BareRow()}));
+  AttemptRecord simulated = Placed();
+  simulated.used_simulator = true;
+  simulated.chosen->target_class = TubeClass::kStrong;
+  simulated.chosen->motion = "escape";
+  const std::string html = Page(Round({Placed(), simulated, Bare()}));
   CHECK_THAT(html, Contains("up: nothing lies over it, no simulation needed"));
   CHECK_THAT(html, Contains("escape: least displacement of the other tubes"));
   CHECK_THAT(html, Contains("one, 0.54&nbsp;N"));
@@ -84,16 +111,13 @@ TEST_CASE("every attempt has its row with what was chosen and why") {
 }
 
 TEST_CASE("every text is escaped, and a policy forbids all but inline style and script") {
-  Json row = PlacedRow();
-  row["motion"]["name"] = "<b>";
-  row["class"] = "\"'><i>";
-  row["outcome"] = "nothing_held<img src=x>";
-  row["success"] = false;
-  RoundReportInput input = Input({row, BareRow()});
-  input.summary["end_reason"] = "</p><img src=x onerror=alert(1)>";
-  const std::string html = RoundReportHtml(input);
+  RoundRecord record = Round({Placed(), Bare()});
+  record.attempts[0].chosen->motion = "<b>";
+  record.attempts[1].strategy = "\"'><i>";
+  record.summary.end_detail = "</p><img src=x onerror=alert(1)>";
+  const std::string html = Page(record);
   const std::string markup = Markup(html);
-  CHECK_THAT(markup, !Contains("<img") && !Contains("<b>") && !Contains("<i>") &&
+  CHECK_THAT(markup, !Contains("<img") && !Contains("<b>:") && !Contains("<i>") &&
                          !Contains("http:") && !Contains("https:"));
   CHECK_THAT(markup, Contains("&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; "
                               "&quot;more&quot;"));
@@ -121,40 +145,51 @@ TEST_CASE("base 64 gives the vectors of RFC 4648") {
   CHECK(Base64(std::string("\xff\xfe\x00", 3)) == "//4A");
 }
 
-TEST_CASE("the time table adds up, computing included when timings are given") {
-  RoundReportInput input = Input({PlacedRow(), BareRow()});
-  const auto row = [](const std::string& name, const std::string& each, const std::string& all,
-                      const std::string& share) {
-    return "<tr><th>" + name + "</th><td class=\"n\">" + each + "</td><td class=\"n\">" + all +
-           "</td><td class=\"n\">" + share + "&nbsp;%</td></tr>";
+TEST_CASE("times are told of attempts, computing included when timings are asked for") {
+  RoundRecord record = Round({Placed(), Bare()});
+  record.timings = {{1, AttemptReport::ComputeTime{3.0, 0.5, 1.0, 4.5}, 60.0},
+                    {1, std::nullopt, 10.0}};
+  const auto row = [](const std::string& name, const std::string& mean) {
+    return "<tr><th>" + name + "</th><td class=\"n\">" + mean + "</td>";
   };
-  std::string html = RoundReportHtml(input);
-  CHECK_THAT(html, Contains(row("scan", "10.00", "20.0", "43")));
-  CHECK_THAT(html, Contains(row("total", "23.00", "46.0", "100")));
-  input.timings = {Json{{"compute_s", {{"modelling", 3.0}, {"evaluator", 1.0}}}}, Json::object()};
-  html = RoundReportHtml(input);
-  CHECK_THAT(html, Contains(row("computing: modelling", "1.50", "3.0", "6")));
-  CHECK_THAT(html, Contains(row("total", "25.00", "50.0", "100")));
+  std::string html = Page(record);
+  CHECK_THAT(html, Contains(row("move", "10.00")) && !Contains("computing: modelling"));
+  CHECK_THAT(html, Contains(row("simulated, all of an attempt", "23.00")));
+  html = Page(record, /*computing_times=*/true);
+  CHECK_THAT(html, Contains(row("computing: modelling", "3.00")));
+  CHECK_THAT(html, Contains(row("computing: total", "4.50")));
 }
 
 TEST_CASE("belief is set against truth, unknown where a cell has none") {
-  Json wrong = PlacedRow();
-  wrong["success"] = false;
-  const std::string html = RoundReportHtml(Input({PlacedRow(), wrong, BareRow()}));
+  AttemptRecord wrong = Placed();
+  wrong.success = false;
+  const std::string html = Page(Round({Placed(), wrong, Bare()}));
   CHECK_THAT(html, Contains("<tr><th>placed</th><td class=\"n\">1</td><td class=\"n\">1</td>"
                             "<td class=\"n\">0</td></tr>"));
   CHECK_THAT(html, Contains("<tr><th>no plan</th><td class=\"n\">0</td><td class=\"n\">0"
                             "</td><td class=\"n\">1</td></tr>"));
 }
 
+TEST_CASE("a round of a cell without truth tells what the pipeline believes, and says so") {
+  AttemptRecord placed = Placed();
+  placed.success = std::nullopt;
+  placed.truth = std::nullopt;
+  RoundRecord record = Round({placed});
+  record.summary.success = std::nullopt;
+  record.summary.first_attempt = {1, 1};
+  const std::string html = Page(record);
+  CHECK_THAT(html, Contains("The cell of this round has no truth") &&
+                       Contains("<span data-share=\"/first_attempt\">100.0</span>") &&
+                       !Contains("data-share=\"/success\""));
+}
+
 TEST_CASE("what a result folder holds is shown, what it lacks is left out") {
   const TemporaryFolder folder;
-  WriteJsonFile(Summary(), folder / "summary.json");
-  Json failed = PlacedRow();
-  failed["outcome"] = "nothing_held";
-  failed["success"] = false;
-  failed["truth"]["placed_ids"] = Json::array();
-  WriteJsonLines({failed, PlacedRow()}, folder / "picks.jsonl");
+  AttemptRecord failed = Placed();
+  failed.outcome = AttemptOutcome::kNothingHeld;
+  failed.success = false;
+  failed.truth->placed_ids.clear();
+  WriteRoundRecord(Round({failed, Placed()}), folder.path());
   const std::string page = folder / "report.html";
   const std::size_t bytes = WriteRoundReport(folder.path(), page, false);
   CHECK(bytes == std::filesystem::file_size(page));
@@ -198,15 +233,21 @@ TEST_CASE("a folder that is no round's, or damaged, is refused with its reason")
   refused(ErrorKind::kMissing, "summary.json");
   WriteJsonFile(Json{{"schema", "tubetwin/pile/1"}}, folder / "summary.json");
   refused(ErrorKind::kBadData, "tubetwin/summary/1");
-  WriteJsonFile(Summary(), folder / "summary.json");
-  WriteFileAtomically(folder / "picks.jsonl", "{}\n{\"round\":\n");
-  refused(ErrorKind::kBadData, "picks.jsonl:2");
+  WriteRoundRecord(Round({Placed()}), folder.path());
+  const std::string good = ReadFile(folder / "picks.jsonl");
+  WriteFileAtomically(folder / "picks.jsonl", good + "{\"round\":\n");
+  refused(ErrorKind::kBadData, "picks.jsonl:2: not a JSON object");
+  Json row = Json::parse(good);
+  row["detection"]["force_N"] = "heavy";
+  WriteFileAtomically(folder / "picks.jsonl", good + row.dump() + "\n");
+  refused(ErrorKind::kBadData, "picks.jsonl:2: detection.force_N: a number is needed");
   CHECK_FALSE(std::filesystem::exists(folder / "report.html"));
 }
 
 TEST_CASE("a round without attempts still gives a page") {
-  CHECK_THAT(RoundReportHtml(Input({})),
-             Contains("There was no attempt.") && Catch::EndsWith("</html>\n"));
+  RoundRecord none = Round({});
+  none.summary.attempts = 0;
+  CHECK_THAT(Page(none), Contains("There was no attempt.") && Catch::EndsWith("</html>\n"));
 }
 
 TEST_CASE("the bars of the chart stand on each other and stay inside the picture") {

@@ -1,15 +1,14 @@
+#include "twin/report/write_report.h"
+
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
-#include "twin/campaign/campaign_summary.h"
-#include "twin/report/campaign_page.h"
-#include "twin/report/round_page.h"
-#include "twin/round/attempt_facts.h"
+#include "twin/campaign/campaign_round.h"
+#include "twin/round/result_files.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;
@@ -23,29 +22,29 @@ struct Kept {
 };
 
 std::string FirstFailure(const RoundRecord& record) {
-  for (const AttemptFacts& facts : FactsOf(record)) {
+  for (const AttemptFacts& facts : FactsOf(record).attempts) {
     if (!facts.failure.empty()) return facts.failure;
   }
   return "";
 }
 
-/// Kept rounds of the campaign below the folders, by arm and round.
+/// Kept rounds of the campaign below the folders, by variant and round.
 std::vector<Kept> KeptRounds(const CampaignResult& result,
                              const std::vector<std::string>& folders) {
   std::map<std::pair<int, int>, const RoundRecord*> records;
-  for (const RoundRecord& record : result.records) records[{record.arm, record.round}] = &record;
+  for (const RoundRecord& record : result.records) {
+    records[{record.variant, record.round}] = &record;
+  }
   std::map<std::pair<int, int>, Kept> found;
   for (const std::string& folder : folders) {
     for (const char* kind : {"failures", "samples"}) {
       std::error_code none;  // No folder: none is kept.
       for (const auto& entry : fs::directory_iterator(fs::path(folder) / kind, none)) {
-        int arm = 0, round = 0;
-        const std::string name = entry.path().filename().string();
-        if (std::sscanf(name.c_str(), "arm-%d-round-%d", &arm, &round) != 2) continue;
-        const auto record = records.find({arm, round});
+        const auto key = RoundOfFolderName(entry.path().filename().string());
+        const auto record = key ? records.find(*key) : records.end();
         if (record == records.end()) continue;
-        found.try_emplace({arm, round}, Kept{entry.path().string(), record->second,
-                                             FirstFailure(*record->second)});
+        found.try_emplace(
+            *key, Kept{entry.path().string(), record->second, FirstFailure(*record->second)});
       }
     }
   }
@@ -68,7 +67,7 @@ std::vector<const Kept*> FailedByTurns(const std::vector<Kept>& kept) {
   return out;
 }
 
-std::vector<ShownAttempt> Shown(const std::vector<Kept>& kept, const std::string& file) {
+std::vector<ShownAttempt> ChooseShown(const std::vector<Kept>& kept, const std::string& file) {
   constexpr int kSuccesses = 2;  // To see how it should be.
   ShownLimits limits;
   std::vector<ShownAttempt> out;
@@ -92,36 +91,84 @@ std::vector<ShownAttempt> Shown(const std::vector<Kept>& kept, const std::string
   return out;
 }
 
-Json SummaryOf(const CampaignResult& result, const std::string& folder) {
+/// A summary beside the rows that was made of other rows is a sign of a half-done merge.
+void CheckSummary(const CampaignResult& result, const std::string& folder) {
   const fs::path file = fs::path(folder) / "summary.json";
-  if (!fs::exists(file)) return CampaignSummary(result);
-  Json summary = ReadJsonFile(file.string());
+  if (!fs::exists(file)) return;
+  const Json summary = ReadJsonFile(file.string());
   const JsonView view(summary, file.string());
   RequireSchema(view, "campaign_summary");
   std::size_t attempts = 0;
-  for (const RoundRecord& record : result.records) attempts += record.picks.size();
+  for (const RoundRecord& record : result.records) attempts += record.attempts.size();
   const auto told = view.Field("attempts").AsInteger();
   if (told != static_cast<std::int64_t>(attempts)) {
     throw Error(ErrorKind::kBadData, file.string() + ": tells of " + std::to_string(told) +
                                          " attempts, the rows are " + std::to_string(attempts) +
                                          "; merge again");
   }
-  return summary;
+}
+
+std::size_t Write(const std::string& file, const std::string& html) {
+  WriteFileAtomically(file, html);
+  return html.size();
 }
 
 }  // namespace
 
+ReportInput CampaignReportInput(CampaignResult result, const std::vector<Metric>& metrics) {
+  ReportInput input;
+  input.result = std::move(result);
+  input.summary = Summarize(input.result, metrics);
+  input.manifest = ManifestOf(input.result);
+  return input;
+}
+
+ReportInput RoundReportInput(RoundRecord record, bool computing_times,
+                             const std::vector<Metric>& metrics) {
+  CampaignResult one;
+  one.identity.seed = record.seed;
+  one.identity.rounds = 1;
+  one.identity.variants = {"this round"};
+  one.records.push_back(std::move(record));
+  ReportInput input = CampaignReportInput(std::move(one), metrics);
+  input.computing_times = computing_times;
+  input.is_round = true;
+  return input;
+}
+
+std::string LinkFrom(const std::string& file, const std::string& folder) {
+  const fs::path from = fs::absolute(file).parent_path();
+  const std::string link =
+      fs::absolute(folder).lexically_normal().lexically_relative(from.lexically_normal()).string();
+  return link == "." || link == "./" ? "" : link;
+}
+
+std::size_t WriteRoundReport(const std::string& folder, const std::string& file,
+                             bool computing_times) {
+  const fs::path at(folder);
+  const RoundRecord record = ReadRoundRecord(folder);
+  KeptForReport kept;
+  ShownLimits limits;
+  kept.link = LinkFrom(file, folder);
+  kept.attempts = ShownAttempts(record, folder, kept.link, ShownKind::kAll, limits);
+  if (fs::exists(at / "picture.png")) {
+    kept.picture = Base64(ReadFile((at / "picture.png").string()));
+  }
+  if (fs::exists(at / "video.mp4")) kept.video = (fs::path(kept.link) / "video.mp4").string();
+  return Write(
+      file, ReportHtml(RoundReportInput(record, computing_times), kept, RoundSummaryJson(record)));
+}
+
 std::size_t WriteCampaignReport(const std::string& folder,
                                 const std::vector<std::string>& kept_folders,
                                 const std::string& file) {
-  const CampaignResult result = ReadCampaignResult(folder);
+  const ReportInput input = CampaignReportInput(ReadCampaignResult(folder));
+  CheckSummary(input.result, folder);
   std::vector<std::string> folders = {folder};
   folders.insert(folders.end(), kept_folders.begin(), kept_folders.end());
-  const std::string html =
-      CampaignReportHtml(result, SummaryOf(result, folder), CampaignManifest(result),
-                         Shown(KeptRounds(result, folders), file));
-  WriteFileAtomically(file, html);
-  return html.size();
+  KeptForReport kept;
+  kept.attempts = ChooseShown(KeptRounds(input.result, folders), file);
+  return Write(file, ReportHtml(input, kept, ToJson(input.summary)));
 }
 
 }  // namespace tubetwin

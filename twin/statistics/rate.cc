@@ -1,0 +1,50 @@
+#include "twin/statistics/rate.h"
+
+#include "models/base/json.h"
+
+namespace tubetwin {
+namespace {
+
+Json IntervalJson(const ShareInterval& interval) {
+  return Json::array({interval.low, interval.high});
+}
+
+}  // namespace
+
+Rate RateOf(const std::vector<Counts>& clusters, const std::optional<RandomStream>& random) {
+  Rate rate{Total(clusters), std::nullopt};
+  if (random) rate.by_cluster = ClusterBootstrap95(clusters, *random);
+  return rate;
+}
+
+Json ToJson(Counts counts) {
+  return Json{
+      {"k", counts.k}, {"n", counts.n}, {"wilson95", IntervalJson(Wilson95(counts.k, counts.n))}};
+}
+
+Json ToJson(const Rate& rate) {
+  Json out = ToJson(rate.counts);
+  if (rate.by_cluster) out["cluster95"] = IntervalJson(*rate.by_cluster);
+  return out;
+}
+
+Counts CountsFromJson(const JsonView& view) {
+  const Counts counts{static_cast<int>(view.Field("k").AsInteger()),
+                      static_cast<int>(view.Field("n").AsInteger())};
+  if (counts.k < 0 || counts.k > counts.n) view.Fail("k must lie between 0 and n");
+  return counts;
+}
+
+std::optional<Spread> OptionalSpread(const std::vector<double>& values) {
+  if (values.empty()) return std::nullopt;
+  return SpreadOf(values);
+}
+
+Json ToJson(const std::optional<Spread>& spread) {
+  if (!spread) return nullptr;
+  return Json{{"n", spread->n},    {"mean", spread->mean},     {"sd", spread->sd},
+              {"p5", spread->p5},  {"median", spread->median}, {"p95", spread->p95},
+              {"max", spread->max}};
+}
+
+}  // namespace tubetwin
