@@ -14,7 +14,7 @@ namespace tubetwin {
 namespace {
 
 const char* const kCampaign =
-    "seed = 3\nrounds = 2\n[keep]\nsample = 1.0\nfilms = false\n[[arm]]\npart = \"pvc_a\"\n"
+    "seed = 3\nrounds = 2\n[keep]\nsample = 1.0\nfilms = false\n[[variant]]\npart = \"pvc_a\"\n"
     "count = 1\n";
 
 }  // namespace
@@ -56,7 +56,7 @@ TEST_CASE("Two shards of a campaign merge to the bytes of the whole", "[app][slo
   CHECK(summary["tubes_start"] == 2);
   CHECK(summary["placed"] == summary["success"]["k"]);
   // A sampled round's folder repeats the round.
-  const std::string kept = "whole/samples/arm-00-round-000001";
+  const std::string kept = "whole/samples/variant-00-round-000001";
   CHECK(std::filesystem::exists(folder / (kept + "/recording.bin")));
   CHECK_FALSE(std::filesystem::exists(folder / "whole/work"));
 

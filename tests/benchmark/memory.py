@@ -66,7 +66,7 @@ def main(arguments):
     campaign = os.path.join(out, "memory.toml")
     with open(campaign, "w") as file:
         file.write(f'seed = 1\nrounds = {rounds}\n[keep]\nfailures = 0\nsample = 0.0\nfilms = false\n'
-                   '[[arm]]\npart = "hose_b"\ncount = 7\n')
+                   '[[variant]]\npart = "hose_b"\ncount = 7\n')
     process = subprocess.Popen([program, "campaign", "run", campaign, "--jobs", "1", "--quiet", "--out", out],
                                stdout=subprocess.DEVNULL)
     peaks, own = watch(process)

@@ -23,7 +23,7 @@ rounds = $states
 failures = 0
 sample = 0.0
 films = false
-[[arm]]
+[[variant]]
 set = {pile.file = "harvest/held", resolution.strategy = [$(cat "$out/strategies")]}
 EOF
 "$program" campaign run "$out/compare.toml" --jobs "${JOBS:-2}" --out "$out/compare"

@@ -19,7 +19,7 @@ rounds = $piles
 failures = 0
 sample = 0.0
 films = false
-[[arm]]
+[[variant]]
 set = {pile.file = "piles", planner.nudges = [0, 2]}
 EOF
 "$program" campaign run "$out/walls.toml" --jobs "${JOBS:-2}" --out "$out/rounds"

@@ -33,16 +33,16 @@ void CheckRefused(const std::string& text, ErrorKind kind, const std::string& sa
 
 }  // namespace
 
-TEST_CASE("a campaign file gives arms of part, count, profile and set") {
+TEST_CASE("a campaign file gives variants of part, count, profile and set") {
   const TemporaryFolder folder;
   const Campaign campaign = Load(folder, R"(
 seed = 5
 rounds = 40
-[[arm]]
+[[variant]]
 part = "pvc_a"
 count = 7
 profile = "best"
-[[arm]]
+[[variant]]
 name = "hoses"
 part = "hose_b"
 count = 9
@@ -60,10 +60,10 @@ set = {planner.exclude_free = true, "pile.arrangement" = "threaded", physics.ran
   CHECK_FALSE(campaign.variants[1].scenario.physics.randomize);
 }
 
-TEST_CASE("lists make an arm of each combination, named by what differs") {
+TEST_CASE("lists make a variant of each combination, named by what differs") {
   const TemporaryFolder folder;
   const Campaign campaign = Load(folder, R"(
-[[arm]]
+[[variant]]
 part = ["pvc_a", "hose_b"]
 count = [3, 7]
 set = {resolution.strategy = ["plus45", "plus45_minus45"], bin.size_m = [0.77, 0.58, 0.09]}
@@ -81,17 +81,17 @@ set = {resolution.strategy = ["plus45", "plus45_minus45"], bin.size_m = [0.77, 0
   CHECK(sevens == 4);
   CHECK(both == 4);
   const Campaign bins = Load(folder, R"(
-[[arm]]
+[[variant]]
 set = {bin.size_m = [[0.77, 0.58, 0.09], [0.80, 0.60, 0.20]]}
 )");
   REQUIRE(bins.variants.size() == 2);
   CHECK(bins.variants[1].scenario.bin.size_m[2] == 0.20);
 }
 
-TEST_CASE("a profile brings its own defaults under what the arm sets") {
+TEST_CASE("a profile brings its own defaults under what the variant sets") {
   const TemporaryFolder folder;
   const Campaign campaign = Load(folder, R"(
-[[arm]]
+[[variant]]
 profile = ["best", "leao2020"]
 set = {resolution.strategy = "none"}
 )");
@@ -102,37 +102,49 @@ set = {resolution.strategy = "none"}
   CHECK_THAT(campaign.variants[1].name, Contains("leao2020"));
 }
 
-TEST_CASE("overrides reach the campaign or every arm") {
+TEST_CASE("overrides reach the campaign or every variant") {
   const TemporaryFolder folder;
-  const Campaign campaign = Load(folder, "rounds = 3\n[[arm]]\ncount = 2\n[[arm]]\ncount = 3\n",
-                                 {"rounds=2", "keep.films=false", "planner.exclude_free=true"});
+  const Campaign campaign =
+      Load(folder, "rounds = 3\n[[variant]]\ncount = 2\n[[variant]]\ncount = 3\n",
+           {"rounds=2", "keep.films=false", "planner.exclude_free=true"});
   CHECK(campaign.rounds == 2);
   CHECK_FALSE(campaign.keep.films);
   for (const CampaignVariant& variant : campaign.variants)
     CHECK(variant.scenario.planner.exclude_free);
 }
 
-TEST_CASE("a bad campaign file is refused with its place and what is allowed") {
-  CheckRefused("rounds = 0\n[[arm]]\n", ErrorKind::kConfig, "C.toml:1:10: rounds: is 0, allowed");
-  CheckRefused("rounds = 2\n", ErrorKind::kConfig, "no [[arm]] table");
-  CheckRefused("round = 2\n[[arm]]\n", ErrorKind::kConfig, "nearest known is 'rounds'");
-  CheckRefused("[[arm]]\nprt = \"pvc_a\"\n", ErrorKind::kConfig, "nearest known is 'part'");
-  CheckRefused("[[arm]]\npart = \"pvc_b\"\n", ErrorKind::kMissing, "pvc_a");
-  CheckRefused("[[arm]]\ncount = 0\n", ErrorKind::kConfig, "C.toml:2:9: pile.count: is 0");
-  CheckRefused("[[arm]]\ncount = [7, \"x\"]\n", ErrorKind::kConfig, "C.toml:2:13");
-  CheckRefused("[[arm]]\ncount = []\n", ErrorKind::kConfig, "empty list");
-  CheckRefused("[[arm]]\nprofile = \"bst\"\n", ErrorKind::kConfig, "best");
-  CheckRefused("[[arm]]\nset = {planer.exclude_free = true}\n", ErrorKind::kConfig, "planer");
-  CheckRefused("[[arm]]\nset = {seed = 4}\n", ErrorKind::kConfig, "give it at the top");
-  CheckRefused("[[arm]]\nset = 4\n", ErrorKind::kConfig, "a table");
-  CheckRefused("[[arm]]\ncount = 7\nset = {pile.count = 8}\n", ErrorKind::kConfig, "given twice");
-  CheckRefused("[[arm]]\n[[arm]]\n", ErrorKind::kConfig, "two arms are called 'pvc_a x 7'");
-  CheckRefused("arm = 3\n", ErrorKind::kConfig, "[[arm]]");
-  CheckRefused("[[arm]]\nset = {pile.file = \"no.csv\"}\n", ErrorKind::kMissing, "no.csv");
-  CheckRefused("[[arm]]\nset = {bin.mesh = \"no.stl\"}\n", ErrorKind::kMissing, "no.stl");
+TEST_CASE("files of before, which call variants arms, are read the same") {
+  const TemporaryFolder folder;
+  const std::string rest = "\npart = \"hose_b\"\ncount = [2, 3]\n";
+  const CampaignIdentity now = IdentityOf(Load(folder, "[[variant]]" + rest), "1");
+  CHECK(IdentityOf(Load(folder, "[[arm]]" + rest), "1").document == now.document);
+  CheckRefused("[[variant]]\n[[arm]]\n", ErrorKind::kConfig, "use [[variant]]");
 }
 
-TEST_CASE("seeds of rounds are the arms' in common, differ and depend on the campaign's seed") {
+TEST_CASE("a bad campaign file is refused with its place and what is allowed") {
+  CheckRefused("rounds = 0\n[[variant]]\n", ErrorKind::kConfig,
+               "C.toml:1:10: rounds: is 0, allowed");
+  CheckRefused("rounds = 2\n", ErrorKind::kConfig, "no [[variant]] table");
+  CheckRefused("round = 2\n[[variant]]\n", ErrorKind::kConfig, "nearest known is 'rounds'");
+  CheckRefused("[[variant]]\nprt = \"pvc_a\"\n", ErrorKind::kConfig, "nearest known is 'part'");
+  CheckRefused("[[variant]]\npart = \"pvc_b\"\n", ErrorKind::kMissing, "pvc_a");
+  CheckRefused("[[variant]]\ncount = 0\n", ErrorKind::kConfig, "C.toml:2:9: pile.count: is 0");
+  CheckRefused("[[variant]]\ncount = [7, \"x\"]\n", ErrorKind::kConfig, "C.toml:2:13");
+  CheckRefused("[[variant]]\ncount = []\n", ErrorKind::kConfig, "empty list");
+  CheckRefused("[[variant]]\nprofile = \"bst\"\n", ErrorKind::kConfig, "best");
+  CheckRefused("[[variant]]\nset = {planer.exclude_free = true}\n", ErrorKind::kConfig, "planer");
+  CheckRefused("[[variant]]\nset = {seed = 4}\n", ErrorKind::kConfig, "give it at the top");
+  CheckRefused("[[variant]]\nset = 4\n", ErrorKind::kConfig, "a table");
+  CheckRefused("[[variant]]\ncount = 7\nset = {pile.count = 8}\n", ErrorKind::kConfig,
+               "given twice");
+  CheckRefused("[[variant]]\n[[variant]]\n", ErrorKind::kConfig,
+               "two variants are called 'pvc_a x 7'");
+  CheckRefused("variant = 3\n", ErrorKind::kConfig, "[[variant]]");
+  CheckRefused("[[variant]]\nset = {pile.file = \"no.csv\"}\n", ErrorKind::kMissing, "no.csv");
+  CheckRefused("[[variant]]\nset = {bin.mesh = \"no.stl\"}\n", ErrorKind::kMissing, "no.stl");
+}
+
+TEST_CASE("seeds of rounds are the variants' in common, differ and depend on the campaign's seed") {
   CHECK(RoundSeed(1, 0) == RoundSeed(1, 0));
   CHECK(RoundSeed(1, 0) != RoundSeed(1, 1));
   CHECK(RoundSeed(1, 1) != RoundSeed(2, 1));
@@ -145,14 +157,14 @@ TEST_CASE("seeds of rounds are the arms' in common, differ and depend on the cam
 
 TEST_CASE("the identity holds what rows depend on and nothing of what is kept") {
   const TemporaryFolder folder;
-  const std::string text = "[[arm]]\npart = \"pvc_a\"\n";
+  const std::string text = "[[variant]]\npart = \"pvc_a\"\n";
   const auto identity = [&](const std::string& text, const std::string& version) {
     return IdentityOf(Load(folder, text), version).document;
   };
   const Json one = identity(text, "1");
   CHECK(identity("[keep]\nsample = 0.5\n" + text, "1") == one);
   CHECK_THAT(*FirstDifference(identity(text + "count = 8\n", "1"), one),
-             Contains("arms.0.config.pile.count is 8 against 7"));
+             Contains("variants.0.config.pile.count is 8 against 7"));
   CHECK_THAT(*FirstDifference(identity(text, "2"), one),
              Contains("program is \"2\" against \"1\""));
 }

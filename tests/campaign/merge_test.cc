@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
@@ -48,12 +49,12 @@ TEST_CASE("missing rounds, doubled rounds and foreign shards are errors that nam
   RunShard(campaign, folder / "a", {0, 3});
   RunShard(campaign, folder / "b", {1, 3});
   CheckRefused({folder / "a", folder / "b"}, ErrorKind::kBadData,
-               "arm 0 ('variant 0') lacks 4 of 12 rounds: 2, 5, 8, 11");
+               "variant 0 ('variant 0') lacks 4 of 12 rounds: 2, 5, 8, 11");
   RunShard(campaign, folder / "c", {2, 3});
   CHECK(ReadShards({folder / "c", folder / "a", folder / "b"}).records.size() == 24);
   RunShard(campaign, folder / "again", {1, 3});
   CheckRefused({folder / "a", folder / "b", folder / "c", folder / "again"}, ErrorKind::kBadData,
-               "arm 0 round 1 stands twice");
+               "variant 0 round 1 stands twice");
   CheckRefused({folder / "a", folder / "b", folder / "c", folder / "again"}, ErrorKind::kBadData,
                "with the same rows");
   RunShard(FakeCampaign(12, 2, 7), folder / "other", {1, 3});
@@ -117,7 +118,7 @@ TEST_CASE(
                      FakeSummary(3, 2, 1, 60.0)),
               Record(2, {}, FakeSummary(3, 0, 0, 10.0))});
   const Json summary = ToJson(Summarize(result));
-  const Json& variant = summary["arms"][0];
+  const Json& variant = summary["variants"][0];
   CHECK(variant["success"]["k"] == 2);
   CHECK(variant["success"]["n"] == 6);
   CHECK(variant["first_attempt"]["k"] == 1);
@@ -140,6 +141,49 @@ TEST_CASE(
   CHECK(variant["sim_s"]["placed_tube"]["median"] == 45.0);
   CHECK(summary["tubes_start"] == 9);
   CHECK(summary["placed"] == 4);
+}
+
+TEST_CASE(
+    "a folder of before, whose rows say arm, is read, summed up and merged, not gone on with") {
+  const TemporaryFolder folder;
+  const Campaign campaign = FakeCampaign(3, 2);
+  RunAll(campaign, folder / "now");
+  const auto renamed = [](std::string text) {
+    const std::pair<std::string, std::string> kNames[] = {
+        {"\"variants\"", "\"arms\""},
+        {"\"variant\"", "\"arm\""},
+        {"tubetwin/campaign/2", "tubetwin/campaign/1"},
+        {"tubetwin/shard/2", "tubetwin/shard/1"}};
+    for (const auto& [now, before] : kNames) {
+      for (auto at = text.find(now); at != std::string::npos; at = text.find(now, at + 1)) {
+        text.replace(at, now.size(), before);
+      }
+    }
+    return text;
+  };
+  // As an earlier version left it: its names, its check sums.
+  WriteFileAtomically(folder / "old/campaign.json",
+                      renamed(ReadFile(folder / "now/campaign.json")));
+  const std::string shard = "/shard-00000-of-00001.jsonl";
+  const std::string mark = ReadCampaignIdentity(folder / "old").fingerprint();
+  std::istringstream lines(ReadFile(folder / ("now" + shard)));
+  std::string old;
+  for (std::string line; std::getline(lines, line);) {
+    Json json = Json::parse(renamed(ParseCheckedLine(line).dump()));
+    if (json.contains("campaign")) json["campaign"] = mark;
+    old += CheckedLine(json) + "\n";
+  }
+  WriteFileAtomically(folder / ("old" + shard), old);
+
+  const CampaignResult was = ReadCampaignResult(folder / "old");
+  const CampaignResult is = ReadCampaignResult(folder / "now");
+  CHECK(ToJson(Summarize(was)) == ToJson(Summarize(is)));
+  WriteMerged(was, folder / "merged");
+  CHECK(ReadFile(folder / "merged/campaign.json") == ReadFile(folder / "old/campaign.json"));
+  CHECK(ReadCampaignResult(folder / "merged").records.size() == 6);
+  const Error refused = Refusal([&] { RunAll(campaign, folder / "old"); });
+  CHECK(refused.kind() == ErrorKind::kCannotCreate);
+  CHECK_THAT(refused.what(), Contains("another version of the program (tubetwin/campaign/1)"));
 }
 
 }  // namespace tubetwin

@@ -26,7 +26,7 @@ TEST_CASE("rounds of a campaign start from the piles of a folder, one each, by n
   WriteFileAtomically(folder / "piles/notes.txt", "no pile");
   const auto load = [&](const std::string& rounds) {
     WriteFileAtomically(folder / "c.toml",
-                        "rounds = " + rounds + "\n[[arm]]\nset = {pile.file = \"piles\"}\n");
+                        "rounds = " + rounds + "\n[[variant]]\nset = {pile.file = \"piles\"}\n");
     return LoadCampaign(folder / "c.toml", {}, std::nullopt);
   };
   const Campaign campaign = load("2");

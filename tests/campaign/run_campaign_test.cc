@@ -76,7 +76,7 @@ TEST_CASE("a round that throws or crashes becomes a row that names it, the other
   WriteMerged(result, folder / "m");
   const Json summary = ReadJsonFile(folder / "m/summary.json");
   CHECK(summary["crashed"] == 3);
-  CHECK(summary["arms"][1]["failures"]["crashed"] == 1);
+  CHECK(summary["variants"][1]["failures"]["crashed"] == 1);
   // Every other round is what it would have been.
   RunAll(campaign, folder / "good");
   const CampaignResult good = ReadShards({folder / "good"});
@@ -169,7 +169,7 @@ TEST_CASE("what is done after the rows cannot lose them, and its words are passe
         return out;
       },
       options);
-  CHECK(notices == std::vector<std::string>{"arm 0 round 0: no film: no EGL"});
+  CHECK(notices == std::vector<std::string>{"variant 0 round 0: no film: no EGL"});
   const CampaignResult result = ReadShards({folder / "c"});
   CHECK(result.records[1].summary.end == RoundEnd::kEmpty);
 }

@@ -70,7 +70,8 @@ TEST_CASE("a changed configuration is refused with the key that differs, and not
   other.variants[0].scenario.planner.exclude_free = true;
   const Error refused = Refusal([&] { RunAll(other, folder / "c"); });
   CHECK(refused.kind() == ErrorKind::kCannotCreate);
-  CHECK_THAT(refused.what(), Contains("arms.0.config.planner.exclude_free is true against false"));
+  CHECK_THAT(refused.what(),
+             Contains("variants.0.config.planner.exclude_free is true against false"));
   const Error seed = Refusal([&] { RunAll(FakeCampaign(4, 1, 2), folder / "c"); });
   CHECK_THAT(seed.what(), Contains("seed is 2 against 1"));
   const Error shards = Refusal([&] { RunAll(FakeCampaign(4), folder / "c", {0, 2}); });

@@ -41,9 +41,10 @@ TEST_CASE("all numbers of a campaign's page are those of summary.json") {
     INFO(pointer);
     CHECK(Json::parse(value_and_text.first) == summary.at(Json::json_pointer(pointer)));
   }
-  for (const char* pointer : {"/placed", "/attempts", "/success/k", "/arms/1/success/cluster95/0",
-                              "/arms/0/by_tubes_left/2/success/wilson95/1",
-                              "/arms/0/by_motion/0/success/n", "/arms/1/sim_s/placed_tube/p95"}) {
+  for (const char* pointer :
+       {"/placed", "/attempts", "/success/k", "/variants/1/success/cluster95/0",
+        "/variants/0/by_tubes_left/2/success/wilson95/1", "/variants/0/by_motion/0/success/n",
+        "/variants/1/sim_s/placed_tube/p95"}) {
     INFO(pointer);
     CHECK(shown.count(pointer) == 1);
   }
@@ -76,7 +77,7 @@ TEST_CASE("kept failures come with recording, every class before one twice, then
   const std::string html = ReadFile(page);
   CHECK(CountOf(Markup(html), "<svg class=\"plan\"") >= failed_rounds);
   CHECK(CountOf(html, ": success</option>") == 2);
-  CHECK_THAT(html, Contains("tubetwin run ../shard/failures/arm-00-round-0000") &&
+  CHECK_THAT(html, Contains("tubetwin run ../shard/failures/variant-00-round-0000") &&
                        Contains("id=\"stage\""));
   // Without being told of the shards' folder there is nothing to show, and that is no error.
   WriteCampaignReport(folder / "merged", {}, page);

@@ -114,11 +114,12 @@ void AddRun(CLI::App& campaign, Common& common) {
   CLI::App* run = campaign.add_subcommand(
       "run",
       "Example: tubetwin campaign run C.toml --out out/c, where C.toml reads\n\n"
-      "  seed = 1\n  rounds = 40\n  [[arm]]\n  part = \"pvc_a\"\n  count = 7\n"
-      "  [[arm]]\n  part = \"hose_b\"\n  count = [7, 10]\n"
+      "  seed = 1\n  rounds = 40\n  [[variant]]\n  part = \"pvc_a\"\n  count = 7\n"
+      "  [[variant]]\n  part = \"hose_b\"\n  count = [7, 10]\n"
       "  set = {resolution.strategy = [\"plus45\", \"plus45_minus45\"]}\n\n"
-      "Runs every round of every arm (a list makes an arm of each value; round r has the same seed "
-      "in all arms), each in a process of its own. Killed at any moment it loses the rounds in "
+      "Runs every round of every variant (a list makes a variant of each value; round r has the "
+      "same seed "
+      "in all variants), each in a process of its own. Killed at any moment it loses the rounds in "
       "hand; the same command goes on where it was. --set, --seed and --shard/--shards as said "
       "below; --threads is per round (default 1). A shard of several is merged with `campaign "
       "merge`; the whole campaign merges itself.");
@@ -195,7 +196,8 @@ void AddReaders(CLI::App& campaign, Common& common) {
   CLI::App* compare = campaign.add_subcommand(
       "compare",
       "Example: tubetwin campaign compare out/plus45 out/plus45_minus45\n\n"
-      "Compares two campaigns of one seed arm by arm, or all arms within one, round by round with "
+      "Compares two campaigns of one seed variant by variant, or all variants within one, round by "
+      "round with "
       "the same seed: exact McNemar tests with Holm's adjustment, differences with bootstrap "
       "intervals.");
   compare->add_option("folders", pair->folders, "One or two campaigns")

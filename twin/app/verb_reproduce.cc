@@ -26,9 +26,10 @@ int RunVerb(const ReproduceOptions& given, const Common& common) {
   if (!std::filesystem::exists(file)) {
     WriteFileAtomically(file, toml);
   } else if (ReadFile(file) != toml) {
-    throw Error(ErrorKind::kCannotCreate,
-                common.out + " holds a reproduction with another seed or other rounds (see " +
-                    file + "): name another folder");
+    throw Error(ErrorKind::kCannotCreate, common.out +
+                                              " holds a reproduction with another seed or other "
+                                              "rounds, or of an earlier version (see " +
+                                              file + "): name another folder");
   }
   const Campaign campaign = LoadCampaign(file, common.overrides, std::nullopt);
   CampaignRunOptions options;

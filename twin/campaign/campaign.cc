@@ -11,6 +11,7 @@
 #include "models/base/text.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/campaign/file_lock.h"
+#include "twin/round/json_fields.h"
 #include "twin/round/round_checkpoint.h"
 
 namespace tubetwin {
@@ -105,7 +106,7 @@ void AddVariants(ConfigSource table, const std::string& where,
     if (std::any_of(texts.begin(), texts.end(), [](const auto& t) { return t.first == "seed"; })) {
       throw Error(ErrorKind::kConfig,
                   where +
-                      ": set: seed: rounds of all arms share the seeds that come from the "
+                      ": set: seed: rounds of all variants share the seeds that come from the "
                       "campaign's; give it at the top");
     }
     ReadInputs(variant, campaign.folder, campaign.rounds);
@@ -114,11 +115,23 @@ void AddVariants(ConfigSource table, const std::string& where,
   }
 }
 
+/// The tables of variants; earlier campaign files call them arms.
+std::vector<ConfigSource> TakeVariants(ConfigSource& source, const std::string& path) {
+  std::vector<ConfigSource> variants = source.TakeTables("variant");
+  std::vector<ConfigSource> arms = source.TakeTables("arm");
+  if (variants.empty()) return arms;
+  if (!arms.empty()) {
+    throw Error(ErrorKind::kConfig,
+                path + ": has [[variant]] and [[arm]] tables, which are the same: use [[variant]]");
+  }
+  return variants;
+}
+
 Json VariantJson(const CampaignVariant& variant, int index, const std::string& folder) {
   Scenario scenario =
       variant.scenario;  // Visiting is non-const: one list serves reading and writing.
   Json out;
-  out["arm"] = index;
+  out["variant"] = index;
   out["config"] =
       Json::parse(WriteConfigJson([&scenario](ConfigVisitor& v) { scenario.Visit(v); }));
   out["config"].erase("seed");  // Each round has its own.
@@ -166,7 +179,7 @@ Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& o
       for_variants.push_back(text);
     }
   }
-  std::vector<ConfigSource> tables = source.TakeTables("arm");
+  std::vector<ConfigSource> tables = TakeVariants(source, path);
   Campaign campaign;
   const fs::path parent = fs::path(path).parent_path();
   if (!parent.empty()) campaign.folder = parent.string();
@@ -174,18 +187,20 @@ Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& o
   source.ReadInto(keys);
   if (seed) campaign.seed = *seed;
   if (tables.empty()) {
-    throw Error(ErrorKind::kConfig, path +
-                                        ": no [[arm]] table; at least one is needed, for example\n"
-                                        "[[arm]]\npart = \"pvc_a\"\ncount = 7");
+    throw Error(ErrorKind::kConfig,
+                path +
+                    ": no [[variant]] table; at least one is needed, for example\n"
+                    "[[variant]]\npart = \"pvc_a\"\ncount = 7");
   }
   for (std::size_t i = 0; i < tables.size(); ++i) {
-    AddVariants(std::move(tables[i]), path + ": arm " + std::to_string(i), for_variants, campaign);
+    AddVariants(std::move(tables[i]), path + ": variant " + std::to_string(i), for_variants,
+                campaign);
   }
   std::set<std::string> names;
   for (const CampaignVariant& variant : campaign.variants) {
     if (!names.insert(variant.name).second) {
-      throw Error(ErrorKind::kConfig,
-                  path + ": two arms are called '" + variant.name + "'; each needs its own name");
+      throw Error(ErrorKind::kConfig, path + ": two variants are called '" + variant.name +
+                                          "'; each needs its own name");
     }
   }
   return campaign;
@@ -203,14 +218,15 @@ std::string CampaignIdentity::fingerprint() const { return Fingerprint(document.
 
 CampaignIdentity IdentityOf(const Campaign& campaign, const std::string& program_version) {
   Json out;
-  out["schema"] = "tubetwin/campaign/1";
+  out["schema"] = "tubetwin/campaign/2";
   out["program"] = program_version;
   out["mujoco"] = EngineVersion();
   out["seed"] = campaign.seed;
   out["rounds"] = campaign.rounds;
-  out["arms"] = Json::array();
+  out["variants"] = Json::array();
   for (std::size_t i = 0; i < campaign.variants.size(); ++i) {
-    out["arms"].push_back(VariantJson(campaign.variants[i], static_cast<int>(i), campaign.folder));
+    out["variants"].push_back(
+        VariantJson(campaign.variants[i], static_cast<int>(i), campaign.folder));
   }
   return IdentityFromJson(std::move(out), "campaign.json");
 }
@@ -218,12 +234,12 @@ CampaignIdentity IdentityOf(const Campaign& campaign, const std::string& program
 CampaignIdentity IdentityFromJson(Json document, const std::string& source) {
   CampaignIdentity out;
   const JsonView view(document, source);
-  RequireSchema(view, "campaign");
+  const int version = SchemaVersion(view, "campaign", 2);
   out.program = view.Field("program").AsString();
   out.mujoco = view.Field("mujoco").AsString();
   out.seed = view.Field("seed").AsInteger();
   out.rounds = static_cast<int>(view.Field("rounds").AsInteger());
-  const JsonView variants = view.Field("arms");
+  const JsonView variants = view.Field(version == 1 ? "arms" : "variants");
   for (std::size_t i = 0; i < variants.Size(); ++i) {
     out.variants.push_back(variants.Item(i).Field("name").AsString());
   }
@@ -250,8 +266,15 @@ void ClaimCampaignFolder(const std::string& folder, const CampaignIdentity& iden
   const auto lock = FileLock::Take((out / "campaign.lock").string());
   const std::string file = (out / "campaign.json").string();
   if (fs::exists(file)) {
-    if (const auto difference =
-            FirstDifference(identity.document, ReadCampaignIdentity(folder).document)) {
+    const CampaignIdentity found = ReadCampaignIdentity(folder);
+    const auto schema = [](const CampaignIdentity& of) { return of.document["schema"]; };
+    if (schema(found) != schema(identity)) {
+      throw Error(ErrorKind::kCannotCreate,
+                  folder + ": holds a campaign of another version of the program (" +
+                      schema(found).get<std::string>() +
+                      "); it can be read and merged, not gone on with; give another --out");
+    }
+    if (const auto difference = FirstDifference(identity.document, found.document)) {
       throw Error(ErrorKind::kCannotCreate,
                   folder + ": holds another campaign: " + *difference +
                       " there; give another --out, or the old configuration to go on with it");

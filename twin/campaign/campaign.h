@@ -36,7 +36,7 @@ struct Campaign {
   std::string folder = ".";  ///< What relative names of pile files refer to.
 };
 
-/// Reads a campaign file: `seed`, `rounds`, `[keep]`, and `[[arm]]` tables with `name`, `part`,
+/// Reads a campaign file: `seed`, `rounds`, `[keep]`, and `[[variant]]` tables with `name`, `part`,
 /// `count`, `profile` and `set = {key = value}` of scenario keys. A list where a key takes one
 /// value (or a list of lists where it takes a list) makes a variant of each. `overrides` are
 /// `a.b=value`: seed, rounds and keep.* of the campaign, anything else a scenario key of every

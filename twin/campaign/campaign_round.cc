@@ -55,16 +55,16 @@ std::string DrawFilms(const fs::path& folder, const std::vector<int>& failed_att
 
 std::string RoundFolderName(int variant, int round) {
   char name[64];
-  std::snprintf(name, sizeof name, "arm-%02d-round-%06d", variant, round);
+  std::snprintf(name, sizeof name, "variant-%02d-round-%06d", variant, round);
   return name;
 }
 
 std::optional<std::pair<int, int>> RoundOfFolderName(const std::string& name) {
   std::pair<int, int> out;
-  if (std::sscanf(name.c_str(), "arm-%d-round-%d", &out.first, &out.second) != 2) {
-    return std::nullopt;
+  for (const char* format : {"variant-%d-round-%d", "arm-%d-round-%d"}) {
+    if (std::sscanf(name.c_str(), format, &out.first, &out.second) == 2) return out;
   }
-  return out;
+  return std::nullopt;
 }
 
 int KeptFailures(const std::string& folder, const Shard& shard) {

@@ -18,9 +18,10 @@ int KeptFailures(const std::string& folder, const Shard& shard);
 /// Whether round `round` is one of the stated sample; the same rounds whatever the shards.
 bool IsSampled(const Campaign& campaign, int round);
 
-/// Name of the folder of a kept round: "arm-00-round-000005".
+/// Name of the folder of a kept round: "variant-00-round-000005".
 std::string RoundFolderName(int variant, int round);
-/// Variant and round of such a name; nothing for any other name.
+/// Variant and round of such a name, or of "arm-00-round-000005" as earlier versions wrote; nothing
+/// for any other name.
 std::optional<std::pair<int, int>> RoundOfFolderName(const std::string& name);
 
 struct CampaignRoundOptions {

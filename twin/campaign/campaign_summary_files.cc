@@ -34,7 +34,7 @@ Json ToJson(const Frequencies& frequencies) {
 
 Json ToJson(const VariantSummary& variant) {
   Json out;
-  out["arm"] = variant.variant;
+  out["variant"] = variant.variant;
   out["name"] = variant.name;
   AddTotals(variant.totals, out);
   AddMetrics(variant.metrics, Metric::Place::kHeadline, out);
@@ -97,24 +97,24 @@ const MetricValue& Named(const std::vector<MetricValue>& values, const std::stri
 
 Json ToJson(const CampaignSummary& summary) {
   Json out;
-  out["schema"] = "tubetwin/campaign_summary/1";
+  out["schema"] = "tubetwin/campaign_summary/2";
   out["seed"] = summary.seed;
   AddTotals(summary.totals, out);
   AddMetrics(summary.metrics, Metric::Place::kHeadline, out);
-  out["arms"] = Json::array();
-  for (const VariantSummary& variant : summary.variants) out["arms"].push_back(ToJson(variant));
+  out["variants"] = Json::array();
+  for (const VariantSummary& variant : summary.variants) out["variants"].push_back(ToJson(variant));
   return out;
 }
 
 Json ToJson(const CampaignManifest& manifest) {
   Json out;
-  out["schema"] = "tubetwin/campaign_manifest/1";
+  out["schema"] = "tubetwin/campaign_manifest/2";
   out["program"] = manifest.program;
   out["mujoco"] = manifest.mujoco;
   out["fingerprint"] = manifest.fingerprint;
   out["compute_s"] = Json::array();
   for (const VariantTimes& times : manifest.compute_s) {
-    Json row{{"arm", times.variant}, {"name", times.name}};
+    Json row{{"variant", times.variant}, {"name", times.name}};
     for (const VariantTimes::Part& part : times.parts) {
       row[part.name] = Json{{"all", ToJson(part.all)},
                             {"without_simulator", ToJson(part.without_simulator)},
@@ -129,7 +129,7 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignManifest& 
   std::string out;
   for (std::size_t i = 0; i < summary.variants.size(); ++i) {
     const VariantSummary& variant = summary.variants[i];
-    out += "arm " + std::to_string(i) + "  " + variant.name + ", " +
+    out += "variant " + std::to_string(i) + "  " + variant.name + ", " +
            std::to_string(variant.totals.rounds) + " rounds\n";
     out += "  success           " + RateText(Named(variant.metrics, "success").rate) + "\n";
     out += "  at first attempt  " + RateText(Named(variant.metrics, "first_attempt").rate) + "\n";

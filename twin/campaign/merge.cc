@@ -12,6 +12,7 @@
 #include "twin/campaign/campaign_summary.h"
 #include "twin/campaign/record_line.h"
 #include "twin/campaign/shard_file.h"
+#include "twin/round/json_fields.h"
 #include "twin/round/result_files.h"
 
 namespace tubetwin {
@@ -74,10 +75,11 @@ void CheckComplete(const CampaignResult& result, const std::map<Key, Found>& fou
       if (found.count({variant, round}) == 0) missing.push_back(round);
     }
     if (!missing.empty()) {
-      Fail("arm " + std::to_string(variant) + " ('" + result.VariantName(variant) + "') lacks " +
-           std::to_string(missing.size()) + " of " + std::to_string(result.identity.rounds) +
-           " rounds: " + Ranges(missing) + "; run or name the shards that hold them (given: " +
-           std::to_string(folders.size()) + " folders)");
+      Fail("variant " + std::to_string(variant) + " ('" + result.VariantName(variant) +
+           "') lacks " + std::to_string(missing.size()) + " of " +
+           std::to_string(result.identity.rounds) + " rounds: " + Ranges(missing) +
+           "; run or name the shards that hold them (given: " + std::to_string(folders.size()) +
+           " folders)");
     }
   }
   const std::int64_t seed = result.identity.seed;
@@ -90,8 +92,7 @@ void CheckComplete(const CampaignResult& result, const std::map<Key, Found>& fou
 }
 
 Key KeyOf(const JsonView& row) {
-  return {static_cast<int>(row.Field("arm").AsInteger()),
-          static_cast<int>(row.Field("round").AsInteger())};
+  return {VariantOf(row), static_cast<int>(row.Field("round").AsInteger())};
 }
 
 /// Records out of the three row files of a merged folder.
@@ -176,7 +177,7 @@ void WriteMerged(const CampaignResult& result, const std::string& folder) {
   for (const RoundRecord& record : result.records) {
     const RowPlace place{record.round, record.variant};
     rounds.push_back(Json{{"round", record.round},
-                          {"arm", record.variant},
+                          {"variant", record.variant},
                           {"seed", record.seed},
                           {"summary", ToJson(record.summary)}});
     for (const AttemptRecord& attempt : record.attempts) picks.push_back(ToJson(attempt, place));

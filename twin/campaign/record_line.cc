@@ -4,6 +4,7 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/campaign/campaign.h"
+#include "twin/round/json_fields.h"
 
 namespace tubetwin {
 namespace {
@@ -16,9 +17,9 @@ constexpr std::size_t kCheckDigits = 16;
 
 Json ToJson(const RoundRecord& record) {
   const RowPlace place{record.round, record.variant};
-  Json out{{"arm", record.variant},  {"round", record.round},
-           {"seed", record.seed},    {"summary", ToJson(record.summary)},
-           {"picks", Json::array()}, {"timings", Json::array()}};
+  Json out{{"variant", record.variant}, {"round", record.round},
+           {"seed", record.seed},       {"summary", ToJson(record.summary)},
+           {"picks", Json::array()},    {"timings", Json::array()}};
   for (const AttemptRecord& attempt : record.attempts) {
     out["picks"].push_back(ToJson(attempt, place));
   }
@@ -30,7 +31,7 @@ Json ToJson(const RoundRecord& record) {
 
 RoundRecord RecordFromJson(const JsonView& view) {
   RoundRecord record;
-  record.variant = static_cast<int>(view.Field("arm").AsInteger());
+  record.variant = VariantOf(view);
   record.round = static_cast<int>(view.Field("round").AsInteger());
   record.seed = view.Field("seed").AsInteger();
   record.summary = SummaryFromJson(view.Field("summary"));

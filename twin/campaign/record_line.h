@@ -7,8 +7,8 @@
 
 namespace tubetwin {
 
-/// {"arm", "round", "seed", "summary", "picks", "timings"}, rows with their place, and back. Throws
-/// Error(kBadData).
+/// {"variant", "round", "seed", "summary", "picks", "timings"}, rows with their place, and back.
+/// Throws Error(kBadData).
 Json ToJson(const RoundRecord& record);
 RoundRecord RecordFromJson(const JsonView& view);
 

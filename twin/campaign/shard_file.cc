@@ -16,6 +16,7 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/campaign/record_line.h"
+#include "twin/round/json_fields.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;
@@ -35,7 +36,7 @@ std::optional<Shard> ShardOfName(const std::string& name) {
 }
 
 std::string HeadLine(const Shard& shard, const std::string& campaign) {
-  return CheckedLine(Json{{"schema", "tubetwin/shard/1"},
+  return CheckedLine(Json{{"schema", "tubetwin/shard/2"},
                           {"shard", shard.index},
                           {"of", shard.count},
                           {"campaign", campaign}});
@@ -111,7 +112,7 @@ ShardContent ReadShardFile(const std::string& path) {
       if (number == 1) {
         const Json head = ParseCheckedLine(line);
         const JsonView view(head, "head");
-        RequireSchema(view, "shard");
+        SchemaVersion(view, "shard", 2);
         out.campaign = view.Field("campaign").AsString();
       } else {
         RoundRecord record = ParseRecordLine(line);

@@ -11,7 +11,7 @@ namespace tubetwin {
 /// An attempt of which more than its row was kept, as a report shows it.
 struct ShownAttempt {
   int row = 0;           ///< In its round's picks, from 0.
-  std::string label;     ///< "arm 0, round 5, attempt 3"; "attempt 3" on a round's own page.
+  std::string label;     ///< "variant 0, round 5, attempt 3"; "attempt 3" on a round's own page.
   std::string failure;   ///< Class of AttemptFacts; empty for a success.
   std::string believed;  ///< The pipeline's outcome.
   std::string reason;    ///< Why, in the pipeline's words; may be empty.

@@ -129,7 +129,7 @@ std::string ReportHtml(const ReportInput& input, const KeptForReport& kept, cons
             Section("attempts", input.is_round ? "Every attempt" : "Failed attempts, row by row",
                     AttemptsTable(input));
   }
-  Json content{{"schema", "tubetwin/report/1"},
+  Json content{{"schema", "tubetwin/report/2"},
                {"kind", input.is_round ? "round" : "campaign"},
                {"summary", told}};
   if (!input.is_round) content["times"] = TimesHistogram(input.result);

@@ -73,7 +73,7 @@ std::string MeasureCell(const MetricValue& value, const Pointer& at) {
 }  // namespace
 
 Pointer VariantPointer(const ReportInput& input, std::size_t variant) {
-  return input.is_round ? Pointer::Nowhere() : Pointer() / "arms" / variant;
+  return input.is_round ? Pointer::Nowhere() : Pointer() / "variants" / variant;
 }
 
 std::string VariantsTable(const ReportInput& input) {

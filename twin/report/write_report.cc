@@ -8,6 +8,7 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/campaign/campaign_round.h"
+#include "twin/round/json_fields.h"
 #include "twin/round/result_files.h"
 
 namespace tubetwin {
@@ -97,7 +98,7 @@ void CheckSummary(const CampaignResult& result, const std::string& folder) {
   if (!fs::exists(file)) return;
   const Json summary = ReadJsonFile(file.string());
   const JsonView view(summary, file.string());
-  RequireSchema(view, "campaign_summary");
+  SchemaVersion(view, "campaign_summary", 2);
   std::size_t attempts = 0;
   for (const RoundRecord& record : result.records) attempts += record.attempts.size();
   const auto told = view.Field("attempts").AsInteger();

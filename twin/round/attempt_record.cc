@@ -114,7 +114,7 @@ Json SimTimeJson(const std::optional<AttemptReport::SimTime>& sim_s) {
 
 Json RowHead(const RowPlace& place, int attempt) {
   Json row{{"round", place.round}};
-  if (place.variant) row["arm"] = *place.variant;
+  if (place.variant) row["variant"] = *place.variant;
   row["attempt"] = attempt;
   return row;
 }

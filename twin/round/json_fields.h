@@ -8,6 +8,25 @@
 
 namespace tubetwin {
 
+/// The version in "schema": "tubetwin/NAME/VERSION". Throws Error(kBadData) for another name and
+/// for versions that this program does not know, which are those beyond `newest`.
+inline int SchemaVersion(const JsonView& document, const std::string& name, int newest) {
+  const std::string found = document.Field("schema").AsString();
+  for (int version = 1; version <= newest; ++version) {
+    if (found == "tubetwin/" + name + "/" + std::to_string(version)) return version;
+  }
+  document.Fail("schema is '" + found + "', 'tubetwin/" + name + "/" + std::to_string(newest) +
+                "' is needed here");
+}
+
+/// The number of a row's or record's variant, which earlier versions called its arm. Throws
+/// Error(kBadData).
+inline int VariantOf(const JsonView& row) {
+  const auto variant = row.Optional("variant");
+  const auto number = variant ? variant : row.Optional("arm");
+  return static_cast<int>((number ? *number : row.Field("variant")).AsInteger());
+}
+
 /// The whole numbers of a list. Throws Error(kBadData).
 inline std::vector<int> IntegersFromJson(const JsonView& view) {
   std::vector<int> numbers;

@@ -3,7 +3,7 @@
 namespace tubetwin {
 
 std::string NameOf(const RoundRecord& record) {
-  return "arm " + std::to_string(record.variant) + " round " + std::to_string(record.round);
+  return "variant " + std::to_string(record.variant) + " round " + std::to_string(record.round);
 }
 
 void SetCrashed(int tubes_start, const std::string& reason, double wall_s, RoundRecord& record) {

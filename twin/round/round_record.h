@@ -20,7 +20,7 @@ struct RoundRecord {
   std::vector<AttemptTiming> timings;  ///< One for each attempt, or none where nobody kept them.
 };
 
-/// "arm 0 round 5", as messages name it.
+/// "variant 0 round 5", as messages name it.
 std::string NameOf(const RoundRecord& record);
 
 /// What stands for a round whose process left nothing: one attempt with outcome "fault" and no

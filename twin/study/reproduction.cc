@@ -224,7 +224,7 @@ std::string ReproductionToml(std::int64_t seed, int rounds) {
       "set = {scan.views = 8}\n"};
   for (int profile = 0; profile < 2; ++profile) {
     for (int set = 0; set < 2; ++set) {
-      out += std::string("\n[[arm]]\nname = \"") + kSets[set] + " " +
+      out += std::string("\n[[variant]]\nname = \"") + kSets[set] + " " +
              kReproductionProfiles[profile] + "\"\npart = \"" + (set == 0 ? "pvc_a" : "hose_b") +
              "\"\ncount = " + std::to_string(kTubes) + "\nprofile = \"" +
              kReproductionProfiles[profile] + "\"\n" + sets[profile];

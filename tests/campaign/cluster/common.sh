@@ -13,7 +13,7 @@ SmallCampaign() {
   cat >"$work/C.toml" <<'TOML'
 seed = 5
 rounds = 4
-[[arm]]
+[[variant]]
 part = "pvc_a"
 count = 1
 TOML
