@@ -1,35 +1,32 @@
 #!/usr/bin/env python3
-"""How the rounds of a campaign ended, and how many a refused motion ended. refusals.py OUT"""
+"""How the rounds of a campaign ended (refusals.toml), and why those that a fault ended. refusals.py OUT..."""
 import collections
+import glob
 import json
-import pathlib
 import sys
 
 
-def rows(folder, name):
-    for path in sorted(pathlib.Path(folder).rglob(name)):
-        with open(path) as lines:
-            yield from (json.loads(line) for line in lines)
+def records(out):
+    for path in sorted(glob.glob(f"{out}/shard-*.jsonl")):
+        for line in open(path):
+            record = json.loads(line)
+            if "summary" in record:
+                yield record
 
 
 def main():
-    attempts = collections.Counter()
-    faults = []
-    for row in rows(sys.argv[1], "picks.jsonl"):
-        attempts[row["outcome"]] += 1
-        if row["outcome"] == "fault":
-            faults.append((row.get("round"), row["reason"]))
-    rounds = collections.Counter()
+    rounds, attempts = collections.Counter(), collections.Counter()
     placed = start = 0
-    for record in rows(sys.argv[1], "rounds*.jsonl"):
+    for record in (record for out in sys.argv[1:] for record in records(out)):
         summary = record["summary"]
         rounds[summary["end_reason"]] += 1
         placed += summary["placed"]
         start += summary["tubes_start"]
-    print(f"rounds by end: {dict(rounds)}; {placed} of {start} tubes placed")
-    print(f"attempts by outcome: {dict(attempts)}")
-    for number, reason in faults:
-        print(f"round {number}: {reason}")
+        attempts.update(pick["outcome"] for pick in record["picks"])
+        if summary["end_reason"] == "fault":
+            print(f"round {record['round']}: {summary['end_detail']}")
+    print(f"{sum(rounds.values())} rounds, by end: {dict(rounds)}; {placed} of {start} tubes placed")
+    print(f"attempts, by outcome: {dict(attempts)}")
 
 
 if __name__ == "__main__":
