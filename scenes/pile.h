@@ -56,17 +56,17 @@ struct SettleResult {
   double simulated_s = 0.0;
 };
 
-/// Lets gravity work until all is at rest (or 20 s of simulated time). Overlaps of the input are
-/// let apart gently first.
+/// Simulates until all is at rest (or 20 s of simulated time). Overlapping tubes of the input are
+/// first pushed apart gently.
 SettleResult SettlePile(const Pile& pile, const RoundPhysics& physics);
 
 /// "dropped": one by one from above the pile. "stirred": the settled pile is swept by a virtual
 /// rod, then settles again. "threaded": laid alternately over and under others without gravity,
-/// then released. Same arguments, same pile. A try that escapes is drawn again from the next
-/// sub-stream (at most 20); so is, up to twelve times, one with a tube over a wall or, threaded,
-/// one with a free tube: the best of them is returned. Throws Error(kUsage) for an unknown
-/// arrangement or a count outside 1 to 40, Error(kBadData) for a part longer than the bin's
-/// diagonal.
+/// then released. Same arguments, same pile. A pile of which a
+/// tube leaves the bin is drawn again from the next sub-stream, at most 20 times. So is, at most 12
+/// times, one with a tube over a wall and a threaded one with a free tube; the best is returned.
+/// Throws Error(kUsage) for an unknown arrangement or a count outside 1 to 40, Error(kBadData) for
+/// a part longer than the bin's diagonal.
 SettleResult GeneratePile(const Part& part, const Bin& bin, int count,
                           const std::string& arrangement, std::uint64_t seed,
                           const RoundPhysics& physics);

@@ -19,7 +19,7 @@ constexpr double kRecoverTimeout_s = 12.0;  ///< Servos on, job started.
 constexpr int kMeanSamples = 5;             ///< 5 ms at the control period.
 constexpr int kContactSamples = 3;          ///< In a row over the limit.
 /// Below this speed of E the direction of motion is taken over from the sample before.
-constexpr double kLeastSpeed_m_s = 1e-4;
+constexpr double kMinSpeed_m_s = 1e-4;
 
 /// Mean of the newest kMeanSamples forces.
 class ForceMean {
@@ -73,8 +73,9 @@ bool Moves(const ArmState& state) {
   return state.mode == ArmMode::kMoving || state.mode == ArmMode::kHolding;
 }
 
-/// Lets one control period pass. After a stall of the host, what the devices have said lies unread
-/// with their threads, which go first: nobody is called silent whom nobody has listened to.
+/// Lets one control period pass. After a stall of the host, messages of the devices wait to be read
+/// by the drivers' threads. These get time to do so, or a device would be called silent that was
+/// not.
 void PassPeriod(Cell& cell) {
   constexpr TimeNs kStall = std::chrono::milliseconds(20), kCatchUp = std::chrono::milliseconds(30);
   const TimeNs due = cell.clock.Now() + kControlPeriod;
@@ -145,7 +146,7 @@ Vector3 MotionDirection_K(const Cell& cell, const JointTrajectory& trajectory, d
   const TrajectoryPoint point = Sample(trajectory, time_s);
   const JacobianMatrix J = Jacobian(cell.arm_model, point.q, cell.layout.X_FE);
   const Vector3 v_B = (J * point.qd).head<3>();
-  if (v_B.norm() < kLeastSpeed_m_s) return previous;
+  if (v_B.norm() < kMinSpeed_m_s) return previous;
   const Matrix3 R_BK = FlangePose(cell.arm_model, point.q).linear() * cell.layout.X_FK.linear();
   return R_BK.transpose() * v_B.normalized();
 }

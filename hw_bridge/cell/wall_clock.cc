@@ -29,8 +29,8 @@ void WallClock::AdvanceTo(TimeNs t) {
   }
 }
 
-Pace::Pace(double rate, TimeNs most_lag)
-    : rate_(rate), most_lag_(most_lag), began_(std::chrono::steady_clock::now()) {
+Pace::Pace(double rate, TimeNs max_lag)
+    : rate_(rate), max_lag_(max_lag), began_(std::chrono::steady_clock::now()) {
   TT_CHECK(rate > 0.0);
 }
 
@@ -39,7 +39,7 @@ TimeNs Pace::Elapsed() const { return Scaled(std::chrono::steady_clock::now() - 
 TimeNs Pace::Due(TimeNs reached) {
   const TimeNs lag = Elapsed() - given_in_ - reached;
   worst_lag_ = std::max(worst_lag_, lag);
-  if (lag > most_lag_) {
+  if (lag > max_lag_) {
     given_in_ += lag;
     ++overruns_;
   }

@@ -23,12 +23,12 @@ class WallClock : public CellClock {
 };
 
 /// Wall time against which a paced loop measures how far it is behind: the clock of `emulate`,
-/// whose world is stepped as fast as this allows. Once behind by more than `most_lag`, the pace
+/// whose world is stepped as fast as this allows. Once behind by more than `max_lag`, the pace
 /// gives in: all that depends on it stretches together, and that overrun is counted.
 class Pace {
  public:
-  /// `most_lag`: cell time.
-  Pace(double rate, TimeNs most_lag);
+  /// `max_lag`: cell time.
+  Pace(double rate, TimeNs max_lag);
 
   /// Cell time that is due now. Gives in first when `reached`, the cell's own time, is too far
   /// behind.
@@ -44,7 +44,7 @@ class Pace {
   TimeNs Elapsed() const;
 
   double rate_;
-  TimeNs most_lag_;
+  TimeNs max_lag_;
   std::chrono::steady_clock::time_point began_;
   TimeNs given_in_{0}, worst_lag_{0};
   int overruns_ = 0;

@@ -36,12 +36,13 @@ double Off(const JointVector& q, const JointTrajectory& path, double time_s) {
 /// Smallest distance of `q` from the path near `progress_s`.
 double OffPath_rad(const JointVector& q, const JointTrajectory& path, double progress_s,
                    double enough_rad) {
-  double least = Off(q, path, progress_s);
+  double min_off_rad = Off(q, path, progress_s);
   const double from_s = std::max(0.0, progress_s - kPathBehind_s);
-  for (double t = progress_s + kPathAhead_s; t >= from_s && least > enough_rad; t -= kPathStep_s) {
-    least = std::min(least, Off(q, path, t));
+  for (double t = progress_s + kPathAhead_s; t >= from_s && min_off_rad > enough_rad;
+       t -= kPathStep_s) {
+    min_off_rad = std::min(min_off_rad, Off(q, path, t));
   }
-  return least;
+  return min_off_rad;
 }
 
 }  // namespace

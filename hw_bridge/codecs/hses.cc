@@ -218,8 +218,8 @@ std::string Encode(const Position& position) {
 
 std::variant<Position, DecodeError> DecodePosition(std::string_view data) {
   // Seven or eight axes, by controller.
-  constexpr std::size_t kLeast = 4 * (5 + 7), kWhole = 4 * (5 + 8);
-  if (data.size() < kLeast) return TooShort(data, kLeast);
+  constexpr std::size_t kMin = 4 * (5 + 7), kWhole = 4 * (5 + 8);
+  if (data.size() < kMin) return TooShort(data, kMin);
   std::string padded(data);
   padded.resize(std::max(padded.size(), kWhole));
   Position position;

@@ -66,9 +66,9 @@ constexpr std::pair<std::uint32_t, const char*> kStatusBits[] = {
 };
 
 std::int32_t CountOf(double value) {
-  constexpr double kMost = 2147483647.0;
+  constexpr double kMax = 2147483647.0;
   if (std::isnan(value)) return 0;
-  return static_cast<std::int32_t>(std::clamp(std::round(value), -kMost - 1.0, kMost));
+  return static_cast<std::int32_t>(std::clamp(std::round(value), -kMax - 1.0, kMax));
 }
 
 }  // namespace

@@ -6,8 +6,9 @@
 
 namespace tubetwin {
 
-// A folder between a scanner and whoever needs its scans: for scanners whose vendor software saves
-// files, over a share or on the same machine. Numbers have six digits or more and count up from 1.
+// A folder through which a client asks for scans and gets them: for scanners whose vendor software
+// saves files, on a network share or on the same machine. Numbers count up from 1 and have at least
+// six digits. "The feed" is whatever saves the scans.
 //
 //   trigger-000007      written by the client: please scan now. Its content is for people.
 //   scan-000007.pcd     the feed's answer: the whole cloud, organised, in the scanner's frame S;
@@ -15,9 +16,9 @@ namespace tubetwin {
 //   scan-000007.error   the feed's refusal: one line of text that says why
 //   ANYTHING.pcd, .ply  a scan that an operator saved: answers a trigger when it comes after it
 //
-// Files of the protocol are written under a name with a leading dot and renamed, so that nobody
-// sees a half. The feed removes a trigger when it takes it up; the client removes one that it gives
-// up. Only the newest trigger counts. Neither removes what the other wrote otherwise.
+// Files are written under a name with a leading dot and then renamed, so that no half-written file
+// is ever read. The feed removes a trigger when it starts on it; the client removes one that it
+// gives up on. Only the newest trigger counts. Otherwise neither removes files of the other.
 
 /// What a file of the folder is, by its name alone.
 struct ScanFileName {

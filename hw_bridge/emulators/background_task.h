@@ -7,8 +7,9 @@
 
 namespace tubetwin {
 
-/// A thread for what may block, above all disks: one task at a time, beside a thread that keeps
-/// time and asks once per period whether it is done. Gives way to other threads (GiveWay).
+/// A thread for work that may block, such as writing files. It runs one task at a time, so that the
+/// thread that keeps time only has to ask once per period whether it is done. Runs at the lowest
+/// priority (GiveWay).
 class BackgroundTask {
  public:
   BackgroundTask();

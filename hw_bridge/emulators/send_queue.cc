@@ -5,7 +5,7 @@
 namespace tubetwin {
 namespace {
 
-constexpr std::size_t kMost = 4096;
+constexpr std::size_t kMax = 4096;
 
 }  // namespace
 
@@ -13,7 +13,7 @@ void SendQueue::Put(const LinkFaults& link, TimeNs now, std::uint64_t to, std::s
   if (link.drop) return;
   if (link.corrupt) message = Corrupted(std::move(message));
   const int copies = link.duplicate ? 2 : 1;
-  for (int i = 0; i < copies && letters_.size() < kMost; ++i) {
+  for (int i = 0; i < copies && letters_.size() < kMax; ++i) {
     letters_.push_back({now + link.delay, to, message});
   }
 }

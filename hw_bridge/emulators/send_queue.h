@@ -9,11 +9,11 @@
 
 namespace tubetwin {
 
-/// What an emulator sends, on its way through a link with faults: lost, late, twice, damaged. Holds
-/// 4096 messages; more are lost, as in any network.
+/// Messages that an emulator sends over a link with faults: they get lost, delayed, doubled or
+/// damaged. Holds 4096 messages; more are lost.
 class SendQueue {
  public:
-  /// Takes a message for `to`, a number that means something to the owner.
+  /// Takes a message for `to`, a number that the owner chooses.
   void Put(const LinkFaults& link, TimeNs now, std::uint64_t to, std::string message);
   /// Hands over what is due, in the order in which it was put in.
   void Deliver(TimeNs now,

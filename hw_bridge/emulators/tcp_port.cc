@@ -13,9 +13,9 @@ namespace {
 
 using asio::ip::tcp;
 
-constexpr std::size_t kMostClients = 8;
-constexpr int kMostAccepts = 32;  // Per look.
-constexpr std::size_t kMostReceived = 8192, kMostUnsent = 65536;
+constexpr std::size_t kMaxClients = 8;
+constexpr int kMaxAccepts = 32;  // Per look.
+constexpr std::size_t kMaxReceived = 8192, kMaxUnsent = 65536;
 constexpr TimeNs kSilent = std::chrono::seconds(1);
 
 struct Client {
@@ -37,7 +37,7 @@ struct TcpPort::Impl {
   explicit Impl(asio::io_context& io) : acceptor(io) {}
 
   void Accept(TimeNs now) {
-    for (int i = 0; i < kMostAccepts; ++i) {
+    for (int i = 0; i < kMaxAccepts; ++i) {
       asio::error_code error;
       tcp::socket socket(acceptor.get_executor());
       acceptor.accept(socket, error);
@@ -51,7 +51,7 @@ struct TcpPort::Impl {
   }
 
   bool MakeRoom(TimeNs now) {
-    if (list.size() < kMostClients) return true;
+    if (list.size() < kMaxClients) return true;
     const auto oldest =
         std::min_element(list.begin(), list.end(),
                          [](const Client& a, const Client& b) { return a.heard < b.heard; });
@@ -62,7 +62,7 @@ struct TcpPort::Impl {
 
   static void Receive(Client& client, TimeNs now) {
     std::array<char, 4096> bytes;
-    while (client.received.size() <= kMostReceived) {
+    while (client.received.size() <= kMaxReceived) {
       asio::error_code error;
       const std::size_t size = client.socket.read_some(asio::buffer(bytes), error);
       if (error) {
@@ -84,7 +84,7 @@ struct TcpPort::Impl {
         break;
       }
     }
-    if (client.unsent.size() > kMostUnsent) client.gone = true;
+    if (client.unsent.size() > kMaxUnsent) client.gone = true;
     if (client.finishing && client.unsent.empty()) client.gone = true;
   }
 
@@ -129,7 +129,7 @@ void TcpPort::Poll(TimeNs now, const Take& take) {
       client.finishing = true;
       client.received.clear();
     }
-    if (client.received.size() > kMostReceived) client.gone = true;
+    if (client.received.size() > kMaxReceived) client.gone = true;
     Impl::Flush(client);
   }
   impl_->list.remove_if([](const Client& client) { return client.gone; });

@@ -14,10 +14,10 @@ class io_context;
 
 namespace tubetwin {
 
-/// A listening TCP port that is looked at once per control period and never blocks. It holds 8
-/// connections; when one more comes, the one that has been silent the longest (1 s at least) is
-/// closed for it, else the new one is. What a client sends without a message in it, or does not
-/// take, is bounded: beyond that its connection is closed.
+/// A listening TCP port that is polled once per control period and never blocks. It holds 8
+/// connections; for one more, the one that has been silent longest (at least 1 s) is closed, or
+/// else the new one. A client that sends too many bytes without a whole message, or does not read
+/// what is sent to it, is disconnected.
 class TcpPort {
  public:
   /// `port` 0: any free one. Throws Error(kDevice) naming `who` (device), address and reason when

@@ -15,7 +15,7 @@ namespace {
 using asio::ip::tcp;
 
 constexpr std::size_t kReceive = 4096;
-constexpr std::size_t kMostUnsent = 64 * 1024;
+constexpr std::size_t kMaxUnsent = 64 * 1024;
 
 struct Connection {
   explicit Connection(tcp::socket s) : socket(std::move(s)) {}
@@ -120,7 +120,7 @@ void TcpServer::Impl::Give(Client id, std::string_view bytes) {
 void TcpServer::Impl::Put(Client id, std::string bytes) {
   Connection* const c = Find(id);
   if (c == nullptr || c->closing) return;
-  if (c->unsent_bytes + bytes.size() > kMostUnsent) return Drop(id);
+  if (c->unsent_bytes + bytes.size() > kMaxUnsent) return Drop(id);
   c->unsent_bytes += bytes.size();
   c->unsent.push_back(std::move(bytes));
   Write(id);
@@ -167,8 +167,8 @@ void TcpServer::Impl::Send(Client id, const std::string& message) {
     std::string bytes = message;
     if (faults.corrupt) corruption.Change(bytes);
     if (faults.delay > TimeNs{0} || !c->delayed.empty()) {
-      constexpr std::size_t kMostDelayed = 4096;
-      if (c->delayed.size() >= kMostDelayed) return Drop(id);
+      constexpr std::size_t kMaxDelayed = 4096;
+      if (c->delayed.size() >= kMaxDelayed) return Drop(id);
       c->delayed.emplace_back(now + faults.delay, std::move(bytes));
     } else {
       Put(id, std::move(bytes));

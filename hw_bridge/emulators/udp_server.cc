@@ -51,13 +51,13 @@ void UdpServer::Impl::Received(std::size_t size) {
   if (faults.drop || faults.freeze) return;  // A frozen controller's buffer soon overflows.
   const std::optional<std::string> bytes = answer(std::string_view(buffer.data(), size));
   if (!bytes) return;
-  constexpr std::size_t kMostDelayed = 1024;
+  constexpr std::size_t kMaxDelayed = 1024;
   for (int i = 0; i < (faults.duplicate ? 2 : 1); ++i) {
     std::string out = *bytes;
     if (faults.corrupt) corruption.Change(out);
     if (faults.delay == TimeNs{0}) {
       Put(out, sender);
-    } else if (delayed.size() < kMostDelayed) {
+    } else if (delayed.size() < kMaxDelayed) {
       delayed.push_back({now + faults.delay, std::move(out), sender});
     }
   }

@@ -76,10 +76,10 @@ class ByteReader {
     Fail("a number does not end");
   }
   std::int64_t Signed() { return UnZigZag(Varint()); }
-  /// A number of things of at least `least_bytes` each that the rest must hold.
-  std::size_t Count(std::size_t least_bytes) {
+  /// A number of things of at least `min_bytes` each that the rest must hold.
+  std::size_t Count(std::size_t min_bytes) {
     const std::uint64_t count = Varint();
-    if (count > left() / least_bytes) {
+    if (count > left() / min_bytes) {
       Fail("a count of " + std::to_string(count) + ", but only " + std::to_string(left()) +
            " bytes are left");
     }

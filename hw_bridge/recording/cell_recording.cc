@@ -101,16 +101,16 @@ std::string CellRecording::Name(const RecordingBlock& block) const {
 }
 
 std::string CellRecording::Content(const RecordingBlock& block) {
-  const std::uint64_t most = block.kind == Kind::kCloud ? kMostCloudBytes : kMostEventBytes;
+  const std::uint64_t max_bytes = block.kind == Kind::kCloud ? kMaxCloudBytes : kMaxEventBytes;
   const auto head = HeadAt(block.byte, block.number);
   if (!head || head->packed != block.packed || head->size != block.size ||
       head->kind != block.kind) {
     Fail(block.byte, "block " + std::to_string(block.number) +
                          ": damaged: its head is not what the index says");
   }
-  if (block.size > most) {
+  if (block.size > max_bytes) {
     throw Error(ErrorKind::kBadData, Name(block) + ": holds " + std::to_string(block.size) +
-                                         " bytes, at most " + std::to_string(most) +
+                                         " bytes, at most " + std::to_string(max_bytes) +
                                          " are allowed");
   }
   return Decompressed(BytesAt(in_, block.byte + kBlockHeadBytes, block.packed), block.size,

@@ -209,7 +209,7 @@ std::vector<float> ReadFloats(std::size_t count, ByteReader& in) {
 
 std::string PackCloud(const OrganizedCloud& cloud) {
   const std::size_t count = cloud.size();
-  TT_CHECK(cloud.width >= 0 && cloud.height >= 0 && count <= kMostCloudPixels);
+  TT_CHECK(cloud.width >= 0 && cloud.height >= 0 && count <= kMaxCloudPixels);
   TT_CHECK(static_cast<std::size_t>(cloud.width) * static_cast<std::size_t>(cloud.height) == count);
   TT_CHECK(cloud.intensity.empty() || cloud.intensity.size() == count);
   TT_CHECK(cloud.label.empty() || cloud.label.size() == count);
@@ -241,9 +241,9 @@ OrganizedCloud UnpackCloud(std::string_view bytes, const std::string& source) {
   ByteReader in(bytes, source);
   const std::uint64_t width = in.U32(), height = in.U32();
   const std::uint8_t flags = in.U8();
-  if (width > kMostCloudPixels || height > kMostCloudPixels || width * height > kMostCloudPixels) {
+  if (width > kMaxCloudPixels || height > kMaxCloudPixels || width * height > kMaxCloudPixels) {
     in.Fail("a cloud of " + std::to_string(width) + " x " + std::to_string(height) +
-            " points, at most " + std::to_string(kMostCloudPixels) + " are allowed");
+            " points, at most " + std::to_string(kMaxCloudPixels) + " are allowed");
   }
   if (flags > (kHasIntensity | kHasLabel)) in.Fail("unknown contents of a cloud");
   OrganizedCloud cloud;

@@ -15,7 +15,7 @@ namespace tubetwin {
 std::string PackCloud(const OrganizedCloud& cloud_S);
 
 /// Largest cloud that can be recorded, pixels.
-inline constexpr std::size_t kMostCloudPixels = std::size_t{1} << 24;
+inline constexpr std::size_t kMaxCloudPixels = std::size_t{1} << 24;
 
 /// Throws Error(kBadData) naming source and byte for bytes that are no such cloud, before anything
 /// is allocated that they cannot fill.

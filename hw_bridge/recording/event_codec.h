@@ -11,9 +11,10 @@
 
 namespace tubetwin {
 
-/// A number that a device reports again and again, usually a whole number of its steps. Told what
-/// came, it expects the next: the same again, or (`linear`) as far on as last time. Every double
-/// comes back with the same bits.
+/// Codes the successive values of one number that a device reports, usually a multiple of the
+/// device's resolution `step`. What is stored is the difference to a prediction: the last value
+/// again, or
+/// (`linear`) the last value plus its last change. Any double is restored with the same bits.
 class NumberTrack {
  public:
   NumberTrack() = default;
@@ -31,7 +32,7 @@ class NumberTrack {
   std::int64_t steps_ = 0, steps_before_ = 0;
 };
 
-/// What encoder and decoder both know of the events so far.
+/// State that encoder and decoder share: the newest values, from which the next are predicted.
 struct EventContext {
   EventContext();
   TimeNs now{0};
@@ -42,12 +43,12 @@ struct EventContext {
   std::array<NumberTrack, 6> wrench;
 };
 
-/// Events as bytes, each told by its difference to what came before: a state that did not change
-/// takes two bytes. A cloud is not among them, only that one was taken: whoever stores the bytes
-/// stores it before them. One thread.
+/// Encodes events as bytes, each by its difference to the ones before: a state that did not change
+/// takes two bytes. Of a cloud only the fact is encoded that it was taken; the caller stores the
+/// cloud itself before these bytes. One thread.
 class EventEncoder {
  public:
-  /// Forgets what came before but the time: what follows can be read by who knows now().
+  /// Forgets all earlier events but the time, so that decoding can start here, given now().
   void Reset();
   void Encode(const CellEvent& event, std::string& out);
   /// Cell time of the newest event.
@@ -57,7 +58,8 @@ class EventEncoder {
   EventContext context_;
 };
 
-/// The events of bytes that an encoder wrote after a Reset at `now`, or of anything. A view.
+/// Decodes bytes that an encoder wrote after a Reset at time `now`. Any other bytes end in an
+/// error, too. Keeps a view of them.
 class EventDecoder {
  public:
   EventDecoder(std::string_view bytes, TimeNs now, std::string source);

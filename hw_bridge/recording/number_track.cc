@@ -15,7 +15,7 @@ constexpr std::array<double, 6> kWrenchStep = {1.0 / 80.0,     1.0 / 80.0,     1
 
 // Codes of a number; from kFirstStep on they count steps from what was expected.
 constexpr std::uint64_t kPlain = 0, kNegativeZero = 1, kFirstStep = 2;
-constexpr double kMostSteps = 0x1p52;
+constexpr double kMaxSteps = 0x1p52;
 
 }  // namespace
 
@@ -31,14 +31,14 @@ void NumberTrack::Remember(double value) {
   last_ = value;
   steps_before_ = steps_;
   const double steps = value / step_;
-  steps_ = std::abs(steps) < kMostSteps ? std::llround(steps) : 0;
+  steps_ = std::abs(steps) < kMaxSteps ? std::llround(steps) : 0;
 }
 
 void NumberTrack::Write(double value, ByteWriter& out) {
   const double steps = value / step_;
   if (SameBits(value, -0.0)) {
     out.Varint(kNegativeZero);
-  } else if (std::abs(steps) < kMostSteps &&
+  } else if (std::abs(steps) < kMaxSteps &&
              SameBits(static_cast<double>(std::llround(steps)) * step_, value)) {
     out.Varint(kFirstStep + ByteWriter::ZigZag(std::llround(steps) - Expected()));
   } else {
@@ -55,7 +55,7 @@ double NumberTrack::Read(ByteReader& in) {
     value = in.F64();
   } else if (code != kNegativeZero) {
     const std::int64_t off = ByteReader::UnZigZag(code - kFirstStep);
-    constexpr auto kFarthest = static_cast<std::int64_t>(8 * kMostSteps);
+    constexpr auto kFarthest = static_cast<std::int64_t>(8 * kMaxSteps);
     if (off < -kFarthest || off > kFarthest) in.Fail("a step too far");
     value = static_cast<double>(Expected() + off) * step_;
   }

@@ -17,8 +17,8 @@ inline constexpr std::size_t kBlockHeadBytes = 60;
 /// What stands at the very end when there is an index: check sum, where the index starts, tag.
 inline constexpr std::size_t kIndexTailBytes = 16;
 /// Largest content of a block of events, header or end; a cloud's is by its pixels.
-inline constexpr std::uint64_t kMostEventBytes = std::uint64_t{1} << 26;
-inline constexpr std::uint64_t kMostCloudBytes = std::uint64_t{20} << 24;
+inline constexpr std::uint64_t kMaxEventBytes = std::uint64_t{1} << 26;
+inline constexpr std::uint64_t kMaxCloudBytes = std::uint64_t{20} << 24;
 
 std::string BlockHead(const RecordingBlock& block);
 /// Nothing when the bytes are no undamaged head; `byte` of the result is not set.

@@ -13,7 +13,7 @@ namespace tubetwin {
 namespace {
 
 /// More reads than this between two commands are no recording of a pick cycle.
-constexpr std::size_t kMostReads = 1000000;
+constexpr std::size_t kMaxReads = 1000000;
 
 /// The recording under the replayed devices.
 class Script {
@@ -112,8 +112,8 @@ class Script {
         command_ = std::move(event);
         return;
       }
-      if (reads_.size() == kMostReads) {
-        throw Error(ErrorKind::kBadData, recording_.path() + ": " + std::to_string(kMostReads) +
+      if (reads_.size() == kMaxReads) {
+        throw Error(ErrorKind::kBadData, recording_.path() + ": " + std::to_string(kMaxReads) +
                                              " reads without a command between them");
       }
       reads_.push_back(std::move(*event));

@@ -58,8 +58,8 @@ WrenchSample WrenchChain::Next(const Wrench& load_K, TimeNs time) {
     const double noisy = filtered_[i] + bias_[i] + stream_.Normal(0.0, noise_counts_ * kCount[i]);
     sample.saturated = sample.saturated || std::abs(noisy) > kRange[i];
     const double counts = std::round(noisy / kCount[i]);
-    const double most = std::floor(kRange[i] / kCount[i] + 1e-9);
-    reading[i] = kCount[i] * std::clamp(counts, -most, most);
+    const double max_counts = std::floor(kRange[i] / kCount[i] + 1e-9);
+    reading[i] = kCount[i] * std::clamp(counts, -max_counts, max_counts);
   }
   sample.wrench_K.force_N = reading.head<3>();
   sample.wrench_K.torque_Nm = reading.tail<3>();

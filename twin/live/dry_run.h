@@ -6,10 +6,10 @@
 
 namespace tubetwin {
 
-/// A cell in which nothing moves, for rehearsals: an arm and fingers that follow every command in
-/// thought only, from where the real ones stand, and the real wrist and scanner. Scans show what
-/// the scanner sees from where it really is. `cell` must outlive it; its gripper must have been
-/// left as it is and its arm unarmed, or nobody else must command them.
+/// A cell for rehearsals in which nothing moves: a simulated arm and gripper that start where the
+/// real ones are and follow every command exactly, with the real wrist sensor and scanner. Scans
+/// show what the scanner sees from its real position. `cell` must outlive it, connected with
+/// CellPurpose::kLook so that its arm and gripper take no commands.
 class DryRunCell {
  public:
   explicit DryRunCell(Cell& cell);

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A pause of the machine shorter than this is caught up; clients notice nothing worse than jitter.
-constexpr TimeNs kMostLag = std::chrono::milliseconds(40);
+constexpr TimeNs kMaxLag = std::chrono::milliseconds(40);
 
 /// One line per event, written by a thread of files as soon as it is free: what is there after a
 /// kill is true.
@@ -110,7 +110,7 @@ EmulateResult Emulate(const Scenario& scenario, const EmulateOptions& options) {
   // Faster than real time it may be busy without a pause, and would leave nothing to the others.
   if (scenario.rate <= 1.0) KeepTime();
   const auto began = std::chrono::steady_clock::now();
-  Pace pace(scenario.rate, FromSeconds(Seconds(kMostLag) * scenario.rate));
+  Pace pace(scenario.rate, FromSeconds(Seconds(kMaxLag) * scenario.rate));
   while (!Ended(options, cell)) {
     const TimeNs next = cell.now() + kControlPeriod;
     if (pace.Due(cell.now()) < next) {

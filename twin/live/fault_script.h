@@ -13,7 +13,7 @@ namespace tubetwin {
 struct ScriptedFault {
   double at_s = -1.0;    ///< Cell time since the start; negative: `on` says when.
   std::string on;        ///< A moment of CycleMoments.
-  int nth = 1;           ///< The how manieth of these moments.
+  int nth = 1;           ///< Which of these moments, counted from 1.
   double delay_s = 0.0;  ///< After the moment, cell time.
   std::string device;    ///< FaultDevices().
   std::string action;    ///< FaultActions(device).

@@ -13,7 +13,7 @@ constexpr Colour kHidden = {0.12f, 0.12f, 0.14f};
 constexpr Colour kUnexplained = {0.95f, 0.10f, 0.80f};
 constexpr Colour kUnseen = {0.55f, 0.10f, 0.12f};
 constexpr double kHiddenRadius_m = 0.0025, kUnexplainedRadius_m = 0.0025, kHatchRadius_m = 0.0008;
-constexpr std::size_t kMostPlaces = 3000;  ///< The scene holds no more; the rest look the same.
+constexpr std::size_t kMaxPlaces = 3000;  ///< The scene holds no more; the rest look the same.
 
 /// The tubes as bodies at rest: any shape is drawn as it was perceived.
 Pile AsPile(const PerceivedPicture& seen) {
@@ -47,7 +47,7 @@ std::vector<Stroke> Strokes(const PerceivedPicture& seen) {
   for (const Polyline& line_N : seen.unseen_floor_N) {
     strokes.push_back({Transformed(X_BN, line_N), kHatchRadius_m, kUnseen});
   }
-  const std::size_t stride = seen.unexplained_N.size() / kMostPlaces + 1;
+  const std::size_t stride = seen.unexplained_N.size() / kMaxPlaces + 1;
   for (std::size_t i = 0; i < seen.unexplained_N.size(); i += stride) {
     const Vector3 p_B = X_BN * seen.unexplained_N[i];
     strokes.push_back({{p_B, p_B + Vector3(0, 0, 1e-4)}, kUnexplainedRadius_m, kUnexplained});

@@ -8,7 +8,7 @@
 
 namespace tubetwin {
 
-/// What perception says of one look, as a picture shows it. Frame N.
+/// A perceived scene as a picture shows it. Frame N.
 struct PerceivedPicture {
   struct Tube {
     int id = 0;

@@ -5,7 +5,7 @@
 namespace tubetwin {
 namespace {
 
-constexpr std::size_t kMostHead = 8192, kMostBody = 65536;
+constexpr std::size_t kMaxHead = 8192, kMaxBody = 65536;
 
 std::variant<std::string, DecodeError> BodyOf(const std::string& answer) {
   const std::size_t line_end = answer.find("\r\n");
@@ -39,7 +39,7 @@ std::variant<std::string, DecodeError> HttpGet(const std::string& host, int port
       result = error;
       return;
     }
-    asio::async_read(socket, asio::dynamic_buffer(answer, kMostHead + kMostBody), received);
+    asio::async_read(socket, asio::dynamic_buffer(answer, kMaxHead + kMaxBody), received);
   };
   const auto connected = [&](asio::error_code error, const tcp::endpoint&) {
     if (error) {

@@ -22,7 +22,7 @@ constexpr auto kPatience = std::chrono::milliseconds(5300);
 constexpr auto kControlPatience = std::chrono::milliseconds(2900);
 // No packet for so long: the rest of the frame is not coming.
 constexpr unsigned kRetentionUs = 500000;
-constexpr std::size_t kMostPayload = std::size_t{1} << 30;
+constexpr std::size_t kMaxPayload = std::size_t{1} << 30;
 
 struct Unref {
   void operator()(gpointer object) const { g_object_unref(object); }
@@ -245,9 +245,9 @@ void GigeCamera::Impl::Start() {
                kRetentionUs, nullptr);
   const gint64 payload = arv_device_get_integer_feature_value(base(), "PayloadSize", problem.out());
   if (problem) Fail("PayloadSize: " + problem.text());
-  if (payload <= 0 || static_cast<std::size_t>(payload) > kMostPayload) {
+  if (payload <= 0 || static_cast<std::size_t>(payload) > kMaxPayload) {
     Fail("PayloadSize is " + std::to_string(payload) + ", allowed are 1 to " +
-         std::to_string(kMostPayload));
+         std::to_string(kMaxPayload));
   }
   constexpr int kBuffers = 2;  // One may come while one is read.
   for (int i = 0; i < kBuffers; ++i) {

@@ -9,7 +9,7 @@
 
 namespace tubetwin {
 
-/// What a wait for a frame brought besides a cloud.
+/// Result of a wait that brought no cloud.
 struct NoFrame {
   enum class Kind {
     kNotYet,      ///< Nothing came within the wait.
@@ -23,19 +23,18 @@ using ReceivedFrame = std::variant<OrganizedCloud, NoFrame>;
 /// A 3D scanner on GigE Vision, set up for range images on software trigger. A thin owner of
 /// aravis's objects; one thread at a time.
 ///
-/// On the network: the camera is addressed by its address only, UDP port 3956. Nothing is
-/// broadcast, nobody is discovered, no raw socket is opened. Two UDP ports are open meanwhile, both
-/// on the one local address that leads to the camera: of the control channel, which also sends a
-/// heartbeat each second, and of the frames. What cannot be avoided: aravis does not ask who sent a
-/// datagram that reaches these two ports, so the network of the scanner has to be a private one.
+/// On the network: packets go only to the camera's address, UDP port 3956. There is no broadcast,
+/// no discovery and no raw socket. Two UDP ports are open, both on the local address that leads to
+/// the camera: one for control, with a heartbeat each second, and one for frames. aravis does not
+/// check who sent a datagram to these ports, so the scanner's network must be a private one.
 class GigeCamera {
  public:
   /// Takes control of the camera and starts acquisition; nothing is scanned before Trigger(). Gives
   /// up within 8 s (a camera that vanishes half way: 13 s). Throws Error(kConfig) when `host` is no
   /// IPv4 address, Error(kDevice) naming device, place and what was awaited.
   explicit GigeCamera(const std::string& host);
-  /// Releases the camera. At once, but up to 5 s when the link is broken: aravis asks several times
-  /// and cannot be told otherwise.
+  /// Releases the camera. At once, but up to 5 s when the link is broken, because aravis repeats
+  /// its request.
   ~GigeCamera();
 
   /// "scanner HOST:3956 (GigE Vision)".
@@ -44,8 +43,8 @@ class GigeCamera {
   /// seconds. It stays lost.
   bool lost() const;
 
-  /// A frame is wanted; those that came before are forgotten. Throws Error(kDevice) when the camera
-  /// does not say that it heard.
+  /// Asks for a frame; earlier ones are dropped. Throws Error(kDevice) when the camera does not
+  /// confirm.
   void Trigger();
   /// Waits up to `wait` for a frame.
   ReceivedFrame Receive(std::chrono::milliseconds wait);

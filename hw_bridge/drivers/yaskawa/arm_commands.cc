@@ -18,7 +18,7 @@ constexpr double kAtRest_rad_s = 0.02;
 constexpr double kLongest_s = 3600.0;
 /// Of the path, in the controller's queue: it runs that much after a link is lost. At least 0.2 s
 /// of wall time, for hosts that are busy, and less than the queue's 0.8 s.
-constexpr double kAhead_s = 0.2, kMostAhead_s = 0.6;
+constexpr double kAhead_s = 0.2, kMaxAhead_s = 0.6;
 
 CommandResult Rejected(const std::string& reason) {
   return {CommandResult::Status::kRejected, reason};
@@ -100,7 +100,7 @@ JointVector ArmSession::StartPoint() const {
 
 CommandResult ArmSession::Start(const CheckedTrajectory& trajectory) {
   if (const auto why = WhyNotStart(trajectory.trajectory())) return Rejected(*why);
-  const double ahead_s = std::min(kMostAhead_s, kAhead_s * std::max(1.0, config_.rate));
+  const double ahead_s = std::min(kMaxAhead_s, kAhead_s * std::max(1.0, config_.rate));
   motion_.emplace(trajectory.trajectory(), StartPoint(), arm_, ahead_s);
   over_at_.reset();
   state_.progress_s = 0.0;

@@ -12,10 +12,10 @@
 
 namespace tubetwin {
 
-/// What YaskawaArm does, without its thread and its lock: never waits but in Connect() and Leave().
+/// YaskawaArm without its thread and lock. Only Connect() and Leave() wait.
 ///
-/// What ends a motion, or makes the controller unready, is remembered until Recover(): it goes away
-/// neither by itself nor by a hand at the pendant.
+/// The reason why a motion ended early or the controller is not ready is kept until Recover(), even
+/// when somebody clears it at the pendant.
 class ArmSession {
  public:
   ArmSession(const YaskawaConfig& config, const ArmModel& arm, const CellClock& clock,

@@ -17,15 +17,15 @@ struct ArmTrouble {
 /// What a status says by itself: emergency stop, alarm.
 std::optional<ArmTrouble> TroubleOf(const simple_message::RobotStatus& status);
 
-/// What the subcode of a controller that is not ready says: kIdle where it only lacks somebody who
-/// starts it.
+/// What the subcode of a controller that is not ready means. kIdle: nothing is wrong, it was only
+/// not started.
 ArmTrouble TroubleOf(std::int32_t subcode);
 
-/// Servo power and the waiting job are all that is missing: START_TRAJ_MODE may be asked for
-/// without a person's word.
+/// Whether only servo power and the job are missing, so that START_TRAJ_MODE may be sent without a
+/// person's consent.
 bool OnlyNotStarted(std::int32_t subcode);
 
-/// `a` is not to be hidden by `b`.
+/// Whether `a` is the more serious one and must not be replaced by `b`.
 bool Outweighs(const ArmTrouble& a, const ArmTrouble& b);
 
 }  // namespace tubetwin

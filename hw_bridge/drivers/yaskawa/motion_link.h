@@ -26,7 +26,7 @@ class MotionLink {
   void Send(simple_message::Body request, Time due);
   /// Requests without an answer.
   bool waiting() const { return !unanswered_.empty(); }
-  /// Time in which nobody could listen is not waited for.
+  /// Moves all deadlines by the time in which this process was not running and could not listen.
   void Forgive(std::chrono::nanoseconds slept) {
     for (Unanswered& one : unanswered_) one.due += slept;
   }
@@ -35,7 +35,8 @@ class MotionLink {
     simple_message::Body request;
     simple_message::MotionReply reply;  ///< A success, for a Ping.
   };
-  /// What came. An answer to nothing that was asked last (a link may repeat itself) is left out.
+  /// The answers that have arrived. One that does not answer the oldest open request is dropped:
+  /// links may repeat messages.
   std::vector<Answer> Take();
 
   /// Why there are no more answers; empty: there may be.

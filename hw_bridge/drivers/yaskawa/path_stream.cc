@@ -134,11 +134,11 @@ double PathStream::PathTime(double stream_s) const {
 
 double PathStream::NearestTime(const JointVector& q, double path_s) const {
   const auto nearest = [&](double from_s, double to_s, double step_s) {
-    double best_s = from_s, least = (q - At(from_s).q).squaredNorm();
+    double best_s = from_s, min_sq = (q - At(from_s).q).squaredNorm();
     for (double t = from_s + step_s; t <= to_s; t += step_s) {
       const double off = (q - At(t).q).squaredNorm();
-      if (off < least) {
-        least = off;
+      if (off < min_sq) {
+        min_sq = off;
         best_s = t;
       }
     }

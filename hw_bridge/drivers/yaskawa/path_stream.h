@@ -9,9 +9,9 @@
 
 namespace tubetwin {
 
-/// A trajectory as the points that a controller is sent one by one: whole milliseconds of the
-/// stream's own time, at most `spacing_ms` apart. The stream's time is that along the path until a
-/// ramp slows it down.
+/// Cuts a trajectory into the points that are sent to a controller one by one, at whole
+/// milliseconds of the stream's time and at most `spacing_ms` apart. The stream's time equals the
+/// time along the path until a stop's ramp stretches it.
 class PathStream {
  public:
   struct Point {
@@ -19,8 +19,8 @@ class PathStream {
     JointVector q = JointVector::Zero(), qd = JointVector::Zero();
   };
 
-  /// `q_start`: where the arm is commanded to be, at rest; what it lacks to the trajectory's first
-  /// point is led in over the first 0.3 s. Precondition: spacing_ms >= 4.
+  /// `q_start`: the commanded position of the arm at rest; its difference to the trajectory's first
+  /// point is faded out over the first 0.3 s. Precondition: spacing_ms >= 4.
   PathStream(const JointTrajectory& trajectory, const JointVector& q_start, int spacing_ms);
 
   /// More path, from where the present one ends. Precondition: the first point is that end.

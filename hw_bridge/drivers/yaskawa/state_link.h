@@ -28,7 +28,7 @@ class StateLink {
   const std::string& problem() const;
   /// Since the last feedback, or the connection.
   std::chrono::nanoseconds Silence() const { return std::chrono::steady_clock::now() - heard_; }
-  /// Time in which nobody could listen is no silence.
+  /// Takes time off the silence in which this process was not running and could not listen.
   void Forgive(std::chrono::nanoseconds slept) { heard_ += slept; }
   const std::string& name() const { return client_.name(); }
 

@@ -9,12 +9,12 @@
 
 namespace tubetwin {
 
-/// One motion as a conversation with the controller: what to ask next, and what its answers mean.
+/// The protocol of one motion: which request to send next, and what the controller's answers mean.
 /// Knows nothing of sockets; all times are the cell's.
 ///
-/// The controller holds what it was given in a queue and runs it whatever happens to the client, so
-/// only `ahead_s` of the path is given in advance; how much waits there is asked for every 0.1 s
-/// and reckoned in between, so that an arm that is held back is not given more.
+/// The controller queues the points that it gets and runs them whatever happens to the client. So
+/// only `ahead_s` of the path is sent in advance. The length of the queue is asked for every 0.1 s
+/// and estimated in between; while the controller holds the arm back, no more is sent.
 class StreamedMotion {
  public:
   /// `arm` must outlive it.

@@ -19,8 +19,8 @@ struct NetLoop::Impl {
 NetLoop::NetLoop() : impl_(std::make_unique<Impl>()) {}
 NetLoop::~NetLoop() = default;
 
-void NetLoop::Wait(std::chrono::nanoseconds most) {
-  if (impl_->io.run_one_for(most) > 0) impl_->io.poll();
+void NetLoop::Wait(std::chrono::nanoseconds max_wait) {
+  if (impl_->io.run_one_for(max_wait) > 0) impl_->io.poll();
 }
 
 void NetLoop::Wake() {
@@ -56,8 +56,8 @@ void TcpClient::Impl::Read() {
           return self->Close(error == asio::error::eof ? "connection closed by the controller"
                                                        : error.message());
         }
-        constexpr std::size_t kMost = 1 << 20;  // Nobody takes it: the driver's thread is stuck.
-        if (self->received.size() > kMost) return self->Close("flooded by the controller");
+        constexpr std::size_t kMax = 1 << 20;  // Nobody takes it: the driver's thread is stuck.
+        if (self->received.size() > kMax) return self->Close("flooded by the controller");
         self->received.append(self->buffer.data(), size);
         self->Read();
       });

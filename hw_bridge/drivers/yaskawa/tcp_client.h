@@ -12,7 +12,7 @@ class NetLoop {
   NetLoop();
   ~NetLoop();
   /// Returns when something came in, Wake() was called, or the time is over.
-  void Wait(std::chrono::nanoseconds most);
+  void Wait(std::chrono::nanoseconds max_wait);
   void Wake();  ///< From any thread.
 
  private:

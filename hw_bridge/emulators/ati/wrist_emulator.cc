@@ -13,8 +13,8 @@ namespace {
 using asio::ip::udp;
 
 const char* const kWho = "emulated force/torque sensor";
-constexpr int kMostRequests = 64;  // Per control period.
-constexpr std::uint64_t kMostRecords = 1000;
+constexpr int kMaxRequests = 64;  // Per control period.
+constexpr std::uint64_t kMaxRecords = 1000;
 constexpr double kSensorRate_Hz = 7000.0;  // Of the box's own count of samples.
 constexpr std::size_t kLongestRequest = 4096;
 
@@ -69,7 +69,7 @@ void WristEmulator::Tick(TimeNs now) {
 }
 
 void WristEmulator::TakeRequests(TimeNs now) {
-  for (int i = 0; i < kMostRequests; ++i) {
+  for (int i = 0; i < kMaxRequests; ++i) {
     std::array<char, 64> bytes;
     asio::error_code error;
     const std::size_t size = udp_->socket.receive_from(asio::buffer(bytes), udp_->from, 0, error);
@@ -121,7 +121,7 @@ void WristEmulator::Stream(TimeNs now) {
   // The first at once, the k-th after it k periods later.
   const auto due =
       1 + static_cast<std::uint64_t>(std::floor(Seconds(now - began_) * config_.rate_Hz + 1e-6));
-  if (due > made_ + kMostRecords) made_ = due - kMostRecords;  // A leap of the cell's clock.
+  if (due > made_ + kMaxRecords) made_ = due - kMaxRecords;  // A leap of the cell's clock.
   while (streaming_ && made_ < due) {
     ++made_;
     ++records_;

@@ -25,8 +25,8 @@ struct WristEmulatorConfig {
 
 /// An ATI Net F/T box with the readings of any ForceTorqueSensor: raw data transfer over UDP
 /// (commands 0, 2, 3, 0x41, 0x42; others are ignored) and /netftapi2.xml over HTTP. It streams to
-/// one client: whoever asked last. Everything happens in Tick(); records of one period carry the
-/// same reading. What is sent too early or late is so because the cell's clock is.
+/// one client, the last that asked. Everything happens in Tick(); records of one period carry the
+/// same reading.
 class WristEmulator : public Emulator {
  public:
   /// `sensor` and `io` must outlive it. Throws Error(kDevice) when a port cannot be had.
@@ -47,7 +47,7 @@ class WristEmulator : public Emulator {
   void InjectStatus(std::uint32_t bits) { injected_ = bits; }
   void Saturate(bool saturated) { saturated_ = saturated; }
   void LatchThreshold() { latched_ = true; }
-  /// The sequence of records goes on that much later.
+  /// Leaves out that many numbers in the records' sequence, as if they had been lost.
   void SkipSequence(std::uint32_t records) { rdt_sequence_ += records; }
 
  private:

@@ -17,10 +17,10 @@ namespace tubetwin {
 /// Frames are sent by GvspSender, not by the fake camera: that one sends all packets of a frame at
 /// once whether the client can follow or not, and nothing can hold back a frame that it has begun.
 ///
-/// On the network: UDP port 3956 of the address, which the standard fixes. What cannot be avoided:
-/// aravis also binds port 3956 of the interface's broadcast address and of 255.255.255.255 and
-/// answers there who seeks cameras; and it takes control packets at their word, so a hostile one
-/// can end the program. For loopback and private networks only.
+/// On the network: UDP port 3956 of the address, as the standard says. aravis also binds port 3956
+/// of the interface's broadcast address and of 255.255.255.255, answers camera discovery there, and
+/// does not validate control packets: a hostile one can end the program. Use it on loopback and
+/// private networks only.
 class GigeFakeCamera {
  public:
   /// Listens at once. Throws Error(kDevice) when `listen` is no IPv4 address of this machine or its

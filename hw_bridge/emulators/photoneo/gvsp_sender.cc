@@ -21,7 +21,7 @@ using SteadyClock = std::chrono::steady_clock;
 // Fits into the buffer that every UDP socket has at first (208 KiB with the kernel's own overhead),
 // twice over.
 constexpr std::size_t kBurst = 64000;
-constexpr auto kMostSilence = std::chrono::seconds(2);
+constexpr auto kMaxSilence = std::chrono::seconds(2);
 constexpr double kEthernetBytesPerS = 100e6;
 
 /// Bytes that wait to be read at a UDP port of this machine; nothing when nobody has it.
@@ -60,7 +60,7 @@ struct GvspSender::Impl {
       return !stop;
     }
     const auto began = SteadyClock::now();
-    while (!stop && SteadyClock::now() - began < kMostSilence) {
+    while (!stop && SteadyClock::now() - began < kMaxSilence) {
       const std::optional<unsigned long> unread = Unread(to);
       if (!unread) return false;
       if (*unread < kBurst) return true;
@@ -77,8 +77,8 @@ GvspSender::GvspSender(const std::string& listen) : impl_(std::make_unique<Impl>
 GvspSender::~GvspSender() = default;
 
 void GvspSender::Send(const Frame& frame, const GvspClient& to, const std::atomic<bool>& stop) {
-  constexpr std::size_t kMostDatagram = 65000;
-  if (frame.packet_size <= kGvspOverhead || frame.packet_size > kMostDatagram) return;
+  constexpr std::size_t kMaxDatagram = 65000;
+  if (frame.packet_size <= kGvspOverhead || frame.packet_size > kMaxDatagram) return;
   const asio::ip::address_v4 address(to.address);
   const udp::endpoint client(address, static_cast<std::uint16_t>(to.port));
   asio::error_code error;

@@ -20,10 +20,10 @@ struct ScannerGigeConfig {
 };
 
 /// A PhoXi on GigE Vision over any Scanner: software trigger in, range image Coord3D_ABC32f in
-/// millimetres out, 0 0 0 where nothing was seen, no pose and no labels. What it does on the
-/// network, and what it must not be exposed to, says GigeFakeCamera.
+/// millimetres out, 0 0 0 where nothing was seen, no pose and no labels. For its traffic on the
+/// network, and for the networks that it must be kept from, see GigeFakeCamera.
 ///
-/// A trigger starts a scan; a trigger while one runs makes that one worthless and starts another
+/// A trigger starts a scan; one that comes during a scan discards that scan and starts another
 /// after it. What is left to compute, and the sending, run on a thread of their own, one scan at a
 /// time; the destructor waits for it. Lost packets are not sent again. A scan that cannot be had
 /// (refusal, failure, a cloud of another size) is never answered, as GigE Vision has no word for

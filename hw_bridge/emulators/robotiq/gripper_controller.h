@@ -9,9 +9,9 @@
 
 namespace tubetwin {
 
-/// What a Robotiq 2F-85 makes of its registers, over any Gripper whose fingers it moves. Activation
-/// opens, closes and opens the fingers. No fault opens them: those that move outwards stop, those
-/// that press go on pressing.
+/// The controller of a Robotiq 2F-85: reads commands from its registers, moves the fingers of any
+/// Gripper, writes states. Activation opens, closes and opens the fingers. No fault opens them:
+/// fingers that move outwards stop, fingers that press keep pressing.
 class GripperController : public ModbusRegisters {
  public:
   /// `gripper` must outlive it.
@@ -23,7 +23,7 @@ class GripperController : public ModbusRegisters {
   std::vector<std::uint16_t> Read(int start, int count) override;
   void Write(int start, const std::vector<std::uint16_t>& values) override;
 
-  /// A request of a client has come in. Silence of 1 s is fault 0x09, which is told once.
+  /// A request of a client has come in. Silence of 1 s is fault 0x09, reported once.
   void Heard(TimeNs now);
   /// After every control period.
   void Tick(TimeNs now);

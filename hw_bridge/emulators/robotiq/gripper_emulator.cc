@@ -8,7 +8,7 @@ namespace tubetwin {
 namespace {
 
 const char* const kWho = "emulated gripper";
-constexpr int kMostRequests = 16;  // Of a client, per control period.
+constexpr int kMaxRequests = 16;  // Of a client, per control period.
 /// A frame ends by silence, 3.5 characters on a wire; programs that share a machine pause longer.
 constexpr TimeNs kEndOfFrame = std::chrono::milliseconds(50);
 
@@ -72,7 +72,7 @@ bool GripperEmulator::Answer(TimeNs now, std::uint64_t client, std::string& rece
     received.clear();
     return true;
   }
-  for (int i = 0; i < kMostRequests && !received.empty(); ++i) {
+  for (int i = 0; i < kMaxRequests && !received.empty(); ++i) {
     std::string answer;
     switch (slave_.Take(received, controller_, answer)) {
       case ModbusSlave::Found::kRequest:

@@ -23,7 +23,7 @@ struct FreeMap {
 };
 
 // The protocol's own limits, whatever the registers.
-constexpr int kMostRead = 125, kMostWritten = 123, kMostWrittenAndRead = 121;
+constexpr int kMaxRead = 125, kMaxWritten = 123, kMaxWrittenAndRead = 121;
 
 /// What a request asks for.
 struct Request {
@@ -53,14 +53,14 @@ std::optional<Request> Parsed(std::string_view pdu) {
       break;
     case MODBUS_FC_WRITE_MULTIPLE_REGISTERS: {
       const int count = U16At(pdu, 3);
-      if (count < 1 || count > kMostWritten || U8At(pdu, 5) != 2 * count) return std::nullopt;
+      if (count < 1 || count > kMaxWritten || U8At(pdu, 5) != 2 * count) return std::nullopt;
       request.write_start = U16At(pdu, 1);
       request.values = Values(pdu, 6, count);
       return request;
     }
     case MODBUS_FC_WRITE_AND_READ_REGISTERS: {
       const int count = U16At(pdu, 7);
-      if (count < 1 || count > kMostWrittenAndRead || U8At(pdu, 9) != 2 * count) {
+      if (count < 1 || count > kMaxWrittenAndRead || U8At(pdu, 9) != 2 * count) {
         return std::nullopt;
       }
       request.read_start = U16At(pdu, 1);
@@ -72,7 +72,7 @@ std::optional<Request> Parsed(std::string_view pdu) {
     default:
       return std::nullopt;
   }
-  if (request.read_count < 1 || request.read_count > kMostRead) return std::nullopt;
+  if (request.read_count < 1 || request.read_count > kMaxRead) return std::nullopt;
   return request;
 }
 

@@ -186,10 +186,10 @@ void HsesResponder::SelectJob(const Request& request, Answer& answer) {
 }
 
 void HsesResponder::Variable(const Request& request, Answer& answer) {
-  const std::uint16_t most = request.command == hses::kIoByte     ? 9999
-                             : request.command == hses::kRegister ? kRegisters - 1
-                                                                  : kVariables - 1;
-  if (request.instance > most) return Refuse(answer, hses::kNoInstance);
+  const std::uint16_t max_instance = request.command == hses::kIoByte     ? 9999
+                                     : request.command == hses::kRegister ? kRegisters - 1
+                                                                          : kVariables - 1;
+  if (request.instance > max_instance) return Refuse(answer, hses::kNoInstance);
   if (request.attribute != 1) return Refuse(answer, hses::kNoAttribute);
   if (request.service == hses::kGetOne) return ReadVariable(request, answer);
   if (request.service == hses::kSetOne) return WriteVariable(request, answer);

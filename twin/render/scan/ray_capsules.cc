@@ -84,8 +84,8 @@ void Meet(const RayCapsule& capsule, const Lanes& rays, Meeting& out) {
     out.x[i] = ox + t * dx - from * ax;
     out.y[i] = oy + t * dy - from * ay;
     out.z[i] = oz + t * dz - from * az;
-    const float least = side ? h : Smaller(h, h_end);  // Not negative where the ray meets it.
-    out.hit[i] = (least >= 0.0f) & (t_ray > rays.near[i]) & (t_ray < rays.far[i]) ? 1 : 0;
+    const float smaller = side ? h : Smaller(h, h_end);  // Not negative where the ray meets it.
+    out.hit[i] = (smaller >= 0.0f) & (t_ray > rays.near[i]) & (t_ray < rays.far[i]) ? 1 : 0;
   }
 }
 

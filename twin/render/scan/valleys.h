@@ -7,9 +7,9 @@
 
 namespace tubetwin {
 
-/// Tells whether a seen point lies in a valley: another surface within reach faces it, each over
-/// the other's horizon, so that the projector's light gets there a second way. Looks at what the
-/// camera sees around the point only. Immutable after construction; the arguments must outlive it.
+/// Says whether a seen point lies in a valley between two surfaces that face each other, where
+/// light of the projector also arrives by reflection. Uses only what the camera sees around the
+/// point. Immutable after construction; the arguments must outlive it.
 class ValleyFinder {
  public:
   static constexpr double kReach_m = 0.004;
