@@ -26,13 +26,13 @@ void AddMetrics(const std::vector<MetricValue>& values, Metric::Place place, Jso
   }
 }
 
-Json ToJson(const Frequencies& frequencies) {
+Json FrequenciesJson(const Frequencies& frequencies) {
   Json out = Json::object();
   for (const auto& [name, count] : frequencies) out[name] = count;
   return out;
 }
 
-Json ToJson(const VariantSummary& variant) {
+Json VariantSummaryJson(const VariantSummary& variant) {
   Json out;
   out["variant"] = variant.variant;
   out["name"] = variant.name;
@@ -51,8 +51,8 @@ Json ToJson(const VariantSummary& variant) {
                                     {"used_simulator", row.used_simulator},
                                     {"move_s", ToJson(row.move_s)}});
   }
-  out["failures"] = ToJson(variant.failures);
-  out["end_reasons"] = ToJson(variant.end_reasons);
+  out["failures"] = FrequenciesJson(variant.failures);
+  out["end_reasons"] = FrequenciesJson(variant.end_reasons);
   AddMetrics(variant.metrics, Metric::Place::kStep, out);
   out["belief"] = Json::object();
   for (const BeliefSummary& row : variant.belief) {
@@ -102,7 +102,8 @@ Json ToJson(const CampaignSummary& summary) {
   AddTotals(summary.totals, out);
   AddMetrics(summary.metrics, Metric::Place::kHeadline, out);
   out["variants"] = Json::array();
-  for (const VariantSummary& variant : summary.variants) out["variants"].push_back(ToJson(variant));
+  for (const VariantSummary& variant : summary.variants)
+    out["variants"].push_back(VariantSummaryJson(variant));
   return out;
 }
 

@@ -11,13 +11,13 @@ namespace {
 
 Json Finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json ToJson(const QuestionResult& test) {
+Json QuestionJson(const QuestionResult& test) {
   return Json{{"question", test.question}, {"a", ToJson(test.a())}, {"b", ToJson(test.b())},
               {"both", test.both},         {"only_a", test.only_a}, {"only_b", test.only_b},
               {"neither", test.neither},   {"p", test.p},           {"p_holm", test.p_holm}};
 }
 
-Json ToJson(const Difference& difference) {
+Json DifferenceJson(const Difference& difference) {
   const Interval& interval = difference.bootstrap95;
   return Json{{"b_minus_a", Finite(difference.b_minus_a)},
               {"bootstrap95", Json::array({Finite(interval.low), Finite(interval.high)})}};
@@ -25,8 +25,8 @@ Json ToJson(const Difference& difference) {
 
 bool IsRate(const MetricDifference& row) { return row.a.metric->kind == Metric::Kind::kRate; }
 
-Json ToJson(const MetricDifference& row) {
-  Json out = ToJson(row.difference);
+Json MetricDifferenceJson(const MetricDifference& row) {
+  Json out = DifferenceJson(row.difference);
   out["a"] = IsRate(row) ? ToJson(row.a.rate) : ToJson(row.a.spread);
   out["b"] = IsRate(row) ? ToJson(row.b.rate) : ToJson(row.b.spread);
   return out;
@@ -71,11 +71,11 @@ Json ToJson(const Comparison& comparison) {
              {"unpaired_a", pair.unpaired_a},
              {"unpaired_b", pair.unpaired_b},
              {"tests", Json::array()}};
-    for (const QuestionResult& test : pair.questions) row["tests"].push_back(ToJson(test));
+    for (const QuestionResult& test : pair.questions) row["tests"].push_back(QuestionJson(test));
     for (const MetricDifference& metric : pair.metrics) {
-      row[metric.a.metric->compared] = ToJson(metric);
+      row[metric.a.metric->compared] = MetricDifferenceJson(metric);
     }
-    row["sim_s_per_placed_tube"] = ToJson(pair.sim_s_per_placed_tube);
+    row["sim_s_per_placed_tube"] = DifferenceJson(pair.sim_s_per_placed_tube);
     out["pairs"].push_back(std::move(row));
     tests += pair.questions.size();
   }

@@ -24,7 +24,7 @@ std::string CellText(const ReproductionCell& cell) {
   return text;
 }
 
-Json ToJson(const ReproductionCell& cell) {
+Json CellJson(const ReproductionCell& cell) {
   if (const auto* rate = std::get_if<Rate>(&cell)) return ToJson(*rate);
   const auto* time = std::get_if<MeanTime>(&cell);
   if (time == nullptr) return nullptr;
@@ -34,12 +34,12 @@ Json ToJson(const ReproductionCell& cell) {
               {"mean95", Json::array({time->mean95_s.low, time->mean95_s.high})}};
 }
 
-Json ToJson(const ReproductionRow& row) {
+Json RowJson(const ReproductionRow& row) {
   Json out{{"set", row.set}, {"what", row.what}, {"tubes_left", nullptr}};
   if (row.tubes_left) out["tubes_left"] = *row.tubes_left;
-  out["paper"] = ToJson(row.paper);
+  out["paper"] = CellJson(row.paper);
   for (std::size_t i = 0; i < row.ours.size(); ++i) {
-    out[kReproductionProfiles[i]] = ToJson(row.ours[i]);
+    out[kReproductionProfiles[i]] = CellJson(row.ours[i]);
   }
   out["apart"] = row.apart;
   return out;
@@ -60,7 +60,7 @@ Json ToJson(const Reproduction& reproduction) {
            {"tables", Json::array()}};
   for (const ReproductionTable& table : reproduction.tables) {
     Json rows = Json::array();
-    for (const ReproductionRow& row : table.rows) rows.push_back(ToJson(row));
+    for (const ReproductionRow& row : table.rows) rows.push_back(RowJson(row));
     out["tables"].push_back(
         Json{{"table", table.number}, {"title", table.title}, {"rows", std::move(rows)}});
   }
