@@ -17,7 +17,7 @@ SOURCE, BUILD = sys.argv[1:3]
 # What a command begins with -> what is added to it, or put in its place: the same verb on less.
 SHORTER = [
     ("build/bin/tubetwin run", "{} --set pile.count=1"),
-    ("build/bin/tubetwin campaign run", "{} --set rounds=1 --set pile.count=2"),
+    ("build/bin/tubetwin campaign run", "{} --set rounds=1 --set pile.count=1"),
     ("./dev test", "./dev test -R ^base.text$"),
     ("./dev lint", "./dev help"),  # clang-tidy is no package of the tests.
 ]
@@ -45,7 +45,7 @@ def shortened(command):
 
 
 def run(command, folder):
-    environment = dict(os.environ, TUBETWIN_NO_BUILD="1", DEMO_TUBES="2")
+    environment = dict(os.environ, TUBETWIN_NO_BUILD="1", DEMO_TUBES="1")
     done = subprocess.run(["bash", "-c", shortened(command)], cwd=folder, env=environment,
                           stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=600)
     check(done.returncode == 0, f"'{command}' ends with 0: {done.returncode}\n"
@@ -57,7 +57,7 @@ def run(command, folder):
 
 
 def links_lead_somewhere(page):
-    """Relative links of a page, but those to pages whose rooms are not made yet."""
+    """The files that a page links to are there."""
     with open(os.path.join(SOURCE, page), encoding="utf-8") as file:
         for target in re.findall(r"\]\(([^)#]+)", file.read()):
             if "://" not in target:

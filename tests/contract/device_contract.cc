@@ -42,6 +42,8 @@ void CheckClockContract(Cell& cell) {
   CHECK(cell.clock.Now() < after + std::chrono::milliseconds(100));
 }
 
+// Long function: one arm goes through all states in turn; each step starts where the last one
+// ended.
 void CheckArmContract(Cell& cell) {
   const ArmState start = cell.arm.State();
   REQUIRE(start.mode == ArmMode::kReady);

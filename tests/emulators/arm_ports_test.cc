@@ -119,6 +119,7 @@ TEST_CASE("the supervision port answers the documented bytes", "[unit]") {
   CHECK(rig.AskHses("no datagram of this protocol").empty());
 }
 
+// Long function: one request and its answer for each row of the protocol's table.
 TEST_CASE("supervision reads alarms, positions and variables, and switches servo, hold and job",
           "[unit]") {
   ArmRig rig;

@@ -74,6 +74,8 @@ TEST_CASE("The check sum is the one of IEEE 802.3, whole or in pieces", "[unit]"
   CHECK(Crc32("") == 0u);
 }
 
+// Long function: one file's bytes are read from the first to the last, and each record says where
+// the next lies.
 TEST_CASE("An MCAP file has the specified records, places and check sums", "[unit]") {
   const TemporaryFolder folder;
   const std::string path = folder / "f.mcap";
