@@ -191,7 +191,9 @@ void AddReaders(CLI::App& campaign, Common& common) {
   AddCommonOptions(*report, common, "The page's file; default DIR/report.html", false);
   report->callback(
       [page, &common] { common.action = [page, &common] { return ReportVerb(*page, common); }; });
+}
 
+void AddCompare(CLI::App& campaign, Common& common) {
   auto pair = std::make_shared<CampaignOptions>();
   CLI::App* compare = campaign.add_subcommand(
       "compare",
@@ -219,6 +221,7 @@ void AddCampaignVerb(CLI::App& app, Common& common) {
   campaign->require_subcommand(1);
   AddRun(*campaign, common);
   AddReaders(*campaign, common);
+  AddCompare(*campaign, common);
 }
 
 }  // namespace tubetwin
