@@ -20,7 +20,7 @@ namespace {
 
 using Status = CandidateScore::Status;
 
-constexpr double kMostTurn_deg = 80.0;
+constexpr double kMaxTurn_deg = 80.0;
 constexpr double kExtraCost_m = 1.0, kJamCost_m = 1.0, kDivergedCost_m = 10.0;
 
 double WallSeconds() {
@@ -48,10 +48,10 @@ void ValidateTurns(const CandidateMotion& candidate, const std::string& who) {
   }
   for (const Eigen::Quaterniond& rotation : candidate.rotations_N) {
     const double angle_deg = Degrees(std::asin(std::clamp(rotation.matrix()(0, 2), -1.0, 1.0)));
-    if (!(std::abs(angle_deg) <= kMostTurn_deg)) {
+    if (!(std::abs(angle_deg) <= kMaxTurn_deg)) {
       throw Error(ErrorKind::kBadData, who + "turned by " + Number(angle_deg) +
                                            " degrees about the bin's y axis, at most " +
-                                           Number(kMostTurn_deg));
+                                           Number(kMaxTurn_deg));
     }
   }
 }

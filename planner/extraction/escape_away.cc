@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include "planner/extraction/clearing_slide.h"
 #include "planner/extraction/generators.h"
-#include "planner/extraction/way_out.h"
 #include "planner/scene_query/wall_clearance.h"
 
 namespace tubetwin {
@@ -22,26 +22,27 @@ Vector3 Direction(int k, int of) {
   return {std::cos(angle), std::sin(angle), 0.0};
 }
 
-/// The cheapest clear way on from a corner along one of the second legs' directions that is cheaper
-/// than `max_cost_m`, or none.
-std::optional<WayOut> SecondLeg(const ExtractionInput& input, const TubeObstacles& around,
-                                const Vector3& corner, const Vector3& first, double max_cost_m) {
+/// The cheapest clear slide on from a corner along one of the second legs' directions that is
+/// cheaper than `max_cost_m`, or none.
+std::optional<ClearingSlide> SecondLeg(const ExtractionInput& input, const TubeObstacles& around,
+                                       const Vector3& corner, const Vector3& first,
+                                       double max_cost_m) {
   PerceivedTube there = input.tube;
   there.centerline_N = Transformed(Translation(corner), input.tube.centerline_N);
-  std::optional<WayOut> best;
+  std::optional<ClearingSlide> best;
   for (int b = 0; b < kLegDirections; ++b) {
     const Vector3 second = Direction(b, kLegDirections);
-    // Straight on was tried, and back is no way.
+    // Straight on was tried, and back is no slide.
     if (std::abs(second.dot(first)) > std::cos(Radians(kSameLine_deg))) continue;
-    const WayOut way = FindWayOut(input, around, there, second, corner);
-    if (!way.clear || way.cost_m >= max_cost_m) continue;
-    max_cost_m = way.cost_m;
-    best = way;
+    const ClearingSlide slide = FindClearingSlide(input, around, there, second, corner);
+    if (!slide.clear || slide.cost_m >= max_cost_m) continue;
+    max_cost_m = slide.cost_m;
+    best = slide;
   }
   return best;
 }
 
-/// The cheapest way out of two legs that is cheaper than `best_cost_m`, or none.
+/// The cheapest slide of two legs that is cheaper than `best_cost_m`, or none.
 std::optional<CandidateMotion> FindTwoLegs(const ExtractionInput& input,
                                            const TubeObstacles& around, double best_cost_m) {
   std::optional<CandidateMotion> best;
@@ -53,19 +54,19 @@ std::optional<CandidateMotion> FindTwoLegs(const ExtractionInput& input,
       const Vector3 corner = leg_m * first;
       const double corner_cost_m = leg_m + kTouchCost_m * around.NewlyTouched(corner);
       if (corner_cost_m >= best_cost_m) continue;
-      const auto way = SecondLeg(input, around, corner, first, best_cost_m - corner_cost_m);
-      if (!way) continue;
-      best_cost_m = corner_cost_m + way->cost_m;
+      const auto slide = SecondLeg(input, around, corner, first, best_cost_m - corner_cost_m);
+      if (!slide) continue;
+      best_cost_m = corner_cost_m + slide->cost_m;
       best = BeginMotion(input, kKind, "escape_corner");
       best->waypoints_N.push_back(corner);
-      best->waypoints_N.push_back(corner + way->length_m * way->direction_N);
+      best->waypoints_N.push_back(corner + slide->length_m * slide->direction_N);
       GoUp(*best, input.config.lift_m);
     }
   }
   if (!best) return best;
   for (const int leg : {1, 2}) {
-    const Vector3 from = best->waypoints_N[leg - 1], way = best->waypoints_N[leg] - from;
-    const auto blocked = around.BlockedGrasps(way, input.config.grasp_step_m, from);
+    const Vector3 from = best->waypoints_N[leg - 1], by = best->waypoints_N[leg] - from;
+    const auto blocked = around.BlockedGrasps(by, input.config.grasp_step_m, from);
     best->blocked_m.insert(best->blocked_m.end(), blocked.begin(), blocked.end());
   }
   return best;
@@ -77,23 +78,25 @@ MotionSet MakeEscapesAway(const ExtractionInput& input) {
   MotionSet set;
   const TubeObstacles around(input.scene, input.tube);
   if (!around.Covered(Vector3::Zero())) return set;
-  std::vector<WayOut> ways;
+  std::vector<ClearingSlide> slides;
   for (int k = 0; k < kDirections; ++k) {
-    const WayOut way = FindWayOut(input, around, input.tube, Direction(k, kDirections));
-    if (way.clear) ways.push_back(way);
+    const ClearingSlide slide =
+        FindClearingSlide(input, around, input.tube, Direction(k, kDirections));
+    if (slide.clear) slides.push_back(slide);
   }
-  std::stable_sort(ways.begin(), ways.end(),
-                   [](const WayOut& a, const WayOut& b) { return a.cost_m < b.cost_m; });
-  if (ways.empty()) {
+  std::stable_sort(
+      slides.begin(), slides.end(),
+      [](const ClearingSlide& a, const ClearingSlide& b) { return a.cost_m < b.cost_m; });
+  if (slides.empty()) {
     set.rejections.push_back(
         {input.tube.id, "escape_away", "", "covered in every direction as far as the walls allow"});
     return set;
   }
-  const WayOut& best = ways.front();
-  AddWayOut(input, around, best, kKind, "escape_away", set);
-  for (const WayOut& way : ways) {
-    if (way.direction_N.dot(best.direction_N) > std::cos(Radians(kApart_deg)) + 1e-9) continue;
-    AddWayOut(input, around, way, kKind, "escape_away2", set);
+  const ClearingSlide& best = slides.front();
+  AddClearingSlide(input, around, best, kKind, "escape_away", set);
+  for (const ClearingSlide& slide : slides) {
+    if (slide.direction_N.dot(best.direction_N) > std::cos(Radians(kApart_deg)) + 1e-9) continue;
+    AddClearingSlide(input, around, slide, kKind, "escape_away2", set);
     break;
   }
   if (best.cost_m > best.length_m) {

@@ -1,5 +1,5 @@
+#include "planner/extraction/clearing_slide.h"
 #include "planner/extraction/generators.h"
-#include "planner/extraction/way_out.h"
 #include "planner/scene_query/tubes.h"
 
 namespace tubetwin {
@@ -9,8 +9,10 @@ MotionSet MakeSlides(const ExtractionInput& input) {
   const TubeObstacles around(input.scene, input.tube);
   if (!around.Covered(Vector3::Zero())) return set;
   const Vector3 chord = ChordDirection(input.tube);
-  AddWayOut(input, around, FindWayOut(input, around, input.tube, chord), "slide", "slide+", set);
-  AddWayOut(input, around, FindWayOut(input, around, input.tube, -chord), "slide", "slide-", set);
+  AddClearingSlide(input, around, FindClearingSlide(input, around, input.tube, chord), "slide",
+                   "slide+", set);
+  AddClearingSlide(input, around, FindClearingSlide(input, around, input.tube, -chord), "slide",
+                   "slide-", set);
   return set;
 }
 

@@ -11,14 +11,14 @@ constexpr double kFirstMode = 3.5160;  // (1.8751)^2, clamped and free.
 
 /// Arc length of the line's point that is nearest to E's z axis.
 double HeldAt(const Polyline& line_E, const std::vector<double>& at_m) {
-  double held_m = 0.0, least_m = line_E.front().head<2>().norm();
+  double held_m = 0.0, min_m = line_E.front().head<2>().norm();
   for (std::size_t i = 1; i < line_E.size(); ++i) {
     const auto a = line_E[i - 1].head<2>(), b = line_E[i].head<2>();
     const double length2 = (b - a).squaredNorm();
     const double t = length2 > 0.0 ? std::clamp(-a.dot(b - a) / length2, 0.0, 1.0) : 0.0;
     const double off_m = (a + t * (b - a)).norm();
-    if (off_m >= least_m) continue;
-    least_m = off_m;
+    if (off_m >= min_m) continue;
+    min_m = off_m;
     held_m = at_m[i - 1] + t * (at_m[i] - at_m[i - 1]);
   }
   return held_m;

@@ -36,14 +36,14 @@ struct MotionOptions {
   double joint_acceleration_share = 0.9;
 
   double opening_m = 0.085;  ///< Between the pads, for the clearance of the fingers.
-  /// Least clearance of everything but the fingers in the bin. A start that is nearer already is
+  /// Smallest clearance of everything but the fingers in the bin. A start that is nearer already is
   /// allowed as long as the motion does not go nearer still.
   double clearance_m = 0.005;
-  /// Least clearance of the fingers to the bin's floor and walls: 0.001 for the way to a grasp,
+  /// Smallest clearance of the fingers to the bin's floor and walls: 0.001 for the way to a grasp,
   /// whose pads end 2 mm over the floor.
   double finger_clearance_m = 0.005;
   double joint_margin_rad = 0.035;  ///< Kept to every joint limit (2 degrees).
-  double manipulability = 0.02;     ///< Least one on the way of lines and tilts (models/arm/arm.h).
+  double manipulability = 0.02;     ///< Smallest one along lines and tilts (models/arm/arm.h).
   /// Transfers only: height of E over the bin floor while travelling; the layout's carry height
   /// when not given.
   std::optional<double> travel_height_m;

@@ -40,12 +40,12 @@ class Bounds {
       lower_[i] = std::min(joint.lower_rad + o.joint_margin_rad, q_start[i] - kStartSlack_rad);
       upper_[i] = std::max(joint.upper_rad - o.joint_margin_rad, q_start[i] + kStartSlack_rad);
     }
-    const double most_m = std::max(o.clearance_m, o.finger_clearance_m) + kLookAhead_m;
-    const auto at_start = context.clearance.Check(q_start, o.opening_m, most_m);
+    const double max_m = std::max(o.clearance_m, o.finger_clearance_m) + kLookAhead_m;
+    const auto at_start = context.clearance.Check(q_start, o.opening_m, max_m);
     finger_clearance_m_ =
         std::min(o.finger_clearance_m, at_start.fingers.clearance_m - kStartSlack_m);
     clearance_m_ = std::min(o.clearance_m, at_start.others.clearance_m - kStartSlack_m);
-    enough_m_ = most_m;
+    enough_m_ = max_m;
     if (path.Cartesian()) {
       manipulability_ =
           std::min(o.manipulability, 0.95 * Manipulability(context.arm, q_start, context.X_FE));

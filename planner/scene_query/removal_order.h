@@ -9,8 +9,9 @@ namespace tubetwin {
 /// What stands against taking a tube out, and what it brings, by the graph of who lies over whom.
 struct RemovalRank {
   int tube = 0;
-  int covers = 0;    ///< Crossings under other tubes.
-  int blockers = 0;  ///< Tubes over it, directly or through others: all that a free way would need.
+  int covers = 0;  ///< Crossings under other tubes.
+  int blockers =
+      0;  ///< Tubes over it, directly or through others: all that would have to go first.
   /// Other tubes that could then be taken one after the other, each free when its turn comes, and
   /// could not while this one lies there.
   int released = 0;

@@ -58,22 +58,22 @@ int TubeObstacles::NewlyTouched(const Vector3& shift) const {
   return count;
 }
 
-std::vector<std::pair<double, double>> TubeObstacles::BlockedGrasps(const Vector3& way,
+std::vector<std::pair<double, double>> TubeObstacles::BlockedGrasps(const Vector3& by_N,
                                                                     double step_m,
                                                                     const Vector3& shift) const {
   std::vector<std::pair<double, double>> out;
   const double length = Length(tube_.centerline_N);
   for (double s = 0.0; s <= length; s += step_m) {
-    if (!GripperMeets(PointAt(tube_.centerline_N, s) + shift, way)) continue;
+    if (!GripperMeets(PointAt(tube_.centerline_N, s) + shift, by_N)) continue;
     out.emplace_back(s - 0.5 * step_m, s + 0.5 * step_m);
   }
   return out;
 }
 
-bool TubeObstacles::GripperMeets(const Vector3& p, const Vector3& way) const {
-  const double length = way.norm();
+bool TubeObstacles::GripperMeets(const Vector3& p, const Vector3& by_N) const {
+  const double length = by_N.norm();
   for (double gone = kNearGrasp_m; gone <= length; gone += kGripperStep_m) {
-    const Vector3 at = p + gone / length * way;
+    const Vector3 at = p + gone / length * by_N;
     for (const Other& other : others_) {
       if (Over(other.line, at, kGripper_m, at.z() - 0.5 * tube_.radius_m)) return true;
     }

@@ -18,9 +18,9 @@ class TubeObstacles {
   /// Tubes that the moved one overlaps although it did not at the start.
   int NewlyTouched(const Vector3& shift) const;
   /// Ranges of arc length, every `step_m`, where a gripper would run into another tube if it held
-  /// the tube there and went straight by `way`, from where the tube was shifted to.
+  /// the tube there and went straight by `by_N`, from where the tube was shifted to.
   std::vector<std::pair<double, double>> BlockedGrasps(
-      const Vector3& way, double step_m, const Vector3& shift = Vector3::Zero()) const;
+      const Vector3& by_N, double step_m, const Vector3& shift = Vector3::Zero()) const;
 
  private:
   struct Other {
@@ -28,7 +28,7 @@ class TubeObstacles {
     double radius_m = 0.0;
     double distance_m = 0.0;  ///< Of the axes at the start.
   };
-  bool GripperMeets(const Vector3& p, const Vector3& way) const;
+  bool GripperMeets(const Vector3& p, const Vector3& by_N) const;
 
   const PerceivedTube& tube_;
   const Polyline points_;

@@ -1,4 +1,4 @@
-#include "planner/extraction/way_out.h"
+#include "planner/extraction/clearing_slide.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,14 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kStep_m = 0.020;  // Between places on the way that are tried.
+constexpr double kStep_m = 0.020;  // Between places that are tried.
 
 }  // namespace
 
-WayOut FindWayOut(const ExtractionInput& input, const TubeObstacles& around,
-                  const PerceivedTube& tube, const Vector3& direction_N, const Vector3& from_N) {
-  WayOut out;
+ClearingSlide FindClearingSlide(const ExtractionInput& input, const TubeObstacles& around,
+                                const PerceivedTube& tube, const Vector3& direction_N,
+                                const Vector3& from_N) {
+  ClearingSlide out;
   out.direction_N = direction_N;
   const double max_m = MaxSlideDistance(tube, direction_N, input.bin, input.config.wall_safety_m);
   for (double length_m = kStep_m; length_m <= max_m; length_m += kStep_m) {
@@ -34,19 +35,20 @@ WayOut FindWayOut(const ExtractionInput& input, const TubeObstacles& around,
   return out;
 }
 
-void AddWayOut(const ExtractionInput& input, const TubeObstacles& around, const WayOut& way,
-               const std::string& kind, const std::string& name, MotionSet& set) {
-  if (!way.clear) {
+void AddClearingSlide(const ExtractionInput& input, const TubeObstacles& around,
+                      const ClearingSlide& slide, const std::string& kind, const std::string& name,
+                      MotionSet& set) {
+  if (!slide.clear) {
     set.rejections.push_back({input.tube.id, name, "",
                               "still covered where the bin's wall ends the slide, after " +
-                                  Number(std::round(way.length_m * 1e3)) + " mm"});
+                                  Number(std::round(slide.length_m * 1e3)) + " mm"});
     return;
   }
   CandidateMotion motion = BeginMotion(input, kind, name);
-  const Vector3 slide = way.length_m * way.direction_N;
-  motion.waypoints_N.push_back(slide);
+  const Vector3 shift = slide.length_m * slide.direction_N;
+  motion.waypoints_N.push_back(shift);
   GoUp(motion, input.config.lift_m);
-  motion.blocked_m = around.BlockedGrasps(slide, input.config.grasp_step_m);
+  motion.blocked_m = around.BlockedGrasps(shift, input.config.grasp_step_m);
   set.motions.push_back(std::move(motion));
 }
 
