@@ -2,7 +2,7 @@
 
 #include "models/base/json.h"
 #include "tests/support/catch.h"
-#include "twin/round/metric.h"
+#include "twin/round/records/metric.h"
 #include "twin/round/result_files.h"
 
 namespace tubetwin {

@@ -1,6 +1,6 @@
 // Records of attempts and rounds as files hold them.
 
-#include "twin/round/round_record.h"
+#include "twin/round/records/round_record.h"
 
 #include "models/base/error.h"
 #include "models/base/json.h"

@@ -118,8 +118,8 @@ void AddRun(CLI::App& campaign, Common& common) {
       "  [[variant]]\n  part = \"hose_b\"\n  count = [7, 10]\n"
       "  set = {resolution.strategy = [\"plus45\", \"plus45_minus45\"]}\n\n"
       "Runs every round of every variant (a list makes a variant of each value; round r has the "
-      "same seed "
-      "in all variants), each in a process of its own. Killed at any moment it loses the rounds in "
+      "same seed in all variants), each in a process of its own. Killed at any moment it loses the "
+      "rounds in "
       "hand; the same command goes on where it was. --set, --seed and --shard/--shards as said "
       "below; --threads is per round (default 1). A shard of several is merged with `campaign "
       "merge`; the whole campaign merges itself.");
@@ -146,7 +146,7 @@ void AddRun(CLI::App& campaign, Common& common) {
       [given, &common] { common.action = [given, &common] { return RunVerb(*given, common); }; });
 }
 
-void AddReaders(CLI::App& campaign, Common& common) {
+void AddStatus(CLI::App& campaign, Common& common) {
   auto seen = std::make_shared<CampaignOptions>();
   CLI::App* status = campaign.add_subcommand(
       "status", "Example: tubetwin campaign status out/c\n\nRounds done, rate and time left.");
@@ -157,7 +157,9 @@ void AddReaders(CLI::App& campaign, Common& common) {
   AddCommonOptions(*status, common, "", false);
   status->callback(
       [seen, &common] { common.action = [seen, &common] { return StatusVerb(*seen, common); }; });
+}
 
+void AddMerge(CLI::App& campaign, Common& common) {
   auto merged = std::make_shared<CampaignOptions>();
   CLI::App* merge = campaign.add_subcommand(
       "merge",
@@ -172,7 +174,9 @@ void AddReaders(CLI::App& campaign, Common& common) {
   merge->callback([merged, &common] {
     common.action = [merged, &common] { return MergeVerb(*merged, common); };
   });
+}
 
+void AddReport(CLI::App& campaign, Common& common) {
   auto page = std::make_shared<CampaignOptions>();
   CLI::App* report = campaign.add_subcommand(
       "report",
@@ -220,7 +224,9 @@ void AddCampaignVerb(CLI::App& app, Common& common) {
       "Many rounds: on one machine or many, interrupted and resumed, merged and compared.");
   campaign->require_subcommand(1);
   AddRun(*campaign, common);
-  AddReaders(*campaign, common);
+  AddStatus(*campaign, common);
+  AddMerge(*campaign, common);
+  AddReport(*campaign, common);
   AddCompare(*campaign, common);
 }
 

@@ -11,7 +11,7 @@
 #include "models/base/text.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/campaign/file_lock.h"
-#include "twin/round/json_fields.h"
+#include "twin/round/records/json_fields.h"
 #include "twin/round/round_checkpoint.h"
 
 namespace tubetwin {

@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "twin/round/attempt_facts.h"
+#include "twin/round/records/attempt_facts.h"
 
 namespace tubetwin {
 namespace {

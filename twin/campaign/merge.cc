@@ -12,7 +12,7 @@
 #include "twin/campaign/campaign_summary.h"
 #include "twin/campaign/record_line.h"
 #include "twin/campaign/shard_file.h"
-#include "twin/round/json_fields.h"
+#include "twin/round/records/json_fields.h"
 #include "twin/round/result_files.h"
 
 namespace tubetwin {

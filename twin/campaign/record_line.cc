@@ -4,7 +4,7 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/campaign/campaign.h"
-#include "twin/round/json_fields.h"
+#include "twin/round/records/json_fields.h"
 
 namespace tubetwin {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "models/base/json_fwd.h"
-#include "twin/round/round_record.h"
+#include "twin/round/records/round_record.h"
 
 namespace tubetwin {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "models/base/error.h"
-#include "twin/round/round_record.h"
+#include "twin/round/records/round_record.h"
 
 namespace tubetwin {
 

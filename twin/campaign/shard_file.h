@@ -6,7 +6,7 @@
 
 #include "twin/campaign/file_lock.h"
 #include "twin/campaign/shard.h"
-#include "twin/round/round_record.h"
+#include "twin/round/records/round_record.h"
 
 namespace tubetwin {
 

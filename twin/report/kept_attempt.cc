@@ -10,7 +10,7 @@
 #include "twin/report/scene_view.h"
 #include "twin/report/text.h"
 #include "twin/report/trace.h"
-#include "twin/round/attempt_facts.h"
+#include "twin/round/records/attempt_facts.h"
 #include "twin/round/round.h"
 
 namespace tubetwin {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "models/base/json.h"
-#include "twin/round/round_record.h"
+#include "twin/round/records/round_record.h"
 
 namespace tubetwin {
 

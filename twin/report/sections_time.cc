@@ -7,7 +7,7 @@
 #include "twin/report/chart.h"
 #include "twin/report/parts.h"
 #include "twin/report/sections.h"
-#include "twin/round/attempt_facts.h"
+#include "twin/round/records/attempt_facts.h"
 
 namespace tubetwin {
 namespace {

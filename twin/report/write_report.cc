@@ -8,7 +8,7 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "twin/campaign/campaign_round.h"
-#include "twin/round/json_fields.h"
+#include "twin/round/records/json_fields.h"
 #include "twin/round/result_files.h"
 
 namespace tubetwin {

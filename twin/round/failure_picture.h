@@ -3,7 +3,7 @@
 #include <string>
 
 #include "twin/render/recording.h"
-#include "twin/round/attempt_record.h"
+#include "twin/round/records/attempt_record.h"
 
 namespace tubetwin {
 

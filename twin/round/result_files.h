@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "models/base/json_fwd.h"
-#include "twin/round/metric.h"
-#include "twin/round/round_record.h"
+#include "twin/round/records/metric.h"
+#include "twin/round/records/round_record.h"
 #include "twin/round/scenario.h"
 
 namespace tubetwin {

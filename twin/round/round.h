@@ -7,7 +7,7 @@
 #include "hw_bridge/recording/replay_cell.h"
 #include "models/base/parallel.h"
 #include "planner/cycle/pick_cycle.h"
-#include "twin/round/round_record.h"
+#include "twin/round/records/round_record.h"
 #include "twin/round/scenario.h"
 
 namespace tubetwin {

@@ -5,7 +5,7 @@
 
 #include "models/base/json_fwd.h"
 #include "twin/cell/truth.h"
-#include "twin/round/round_record.h"
+#include "twin/round/records/round_record.h"
 
 namespace tubetwin {
 

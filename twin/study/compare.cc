@@ -6,7 +6,7 @@
 #include <map>
 
 #include "models/base/error.h"
-#include "twin/round/attempt_facts.h"
+#include "twin/round/records/attempt_facts.h"
 
 namespace tubetwin {
 namespace {

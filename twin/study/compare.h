@@ -6,7 +6,7 @@
 
 #include "models/base/json_fwd.h"
 #include "twin/campaign/merge.h"
-#include "twin/round/metric.h"
+#include "twin/round/records/metric.h"
 
 namespace tubetwin {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "models/base/error.h"
-#include "twin/round/metric.h"
+#include "twin/round/records/metric.h"
 #include "twin/study/paper_2020.h"
 
 namespace tubetwin {

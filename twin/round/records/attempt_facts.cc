@@ -1,4 +1,4 @@
-#include "twin/round/attempt_facts.h"
+#include "twin/round/records/attempt_facts.h"
 
 namespace tubetwin {
 namespace {

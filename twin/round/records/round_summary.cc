@@ -1,7 +1,7 @@
-#include "twin/round/round_summary.h"
+#include "twin/round/records/round_summary.h"
 
 #include "models/base/json.h"
-#include "twin/round/json_fields.h"
+#include "twin/round/records/json_fields.h"
 #include "twin/statistics/rate.h"
 
 namespace tubetwin {

@@ -1,6 +1,6 @@
 // The metrics of this program. A new one is a function like these and a line in the list below.
 
-#include "twin/round/metric.h"
+#include "twin/round/records/metric.h"
 
 namespace tubetwin {
 namespace {

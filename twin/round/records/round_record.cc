@@ -1,4 +1,4 @@
-#include "twin/round/round_record.h"
+#include "twin/round/records/round_record.h"
 
 namespace tubetwin {
 

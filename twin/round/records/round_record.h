@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "twin/round/attempt_record.h"
-#include "twin/round/round_summary.h"
+#include "twin/round/records/attempt_record.h"
+#include "twin/round/records/round_summary.h"
 
 namespace tubetwin {
 

@@ -1,10 +1,10 @@
-#include "twin/round/attempt_record.h"
+#include "twin/round/records/attempt_record.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "models/base/json.h"
-#include "twin/round/json_fields.h"
+#include "twin/round/records/json_fields.h"
 
 namespace tubetwin {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "twin/round/round_record.h"
+#include "twin/round/records/round_record.h"
 
 namespace tubetwin {
 

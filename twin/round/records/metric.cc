@@ -1,4 +1,4 @@
-#include "twin/round/metric.h"
+#include "twin/round/records/metric.h"
 
 #include <utility>
 

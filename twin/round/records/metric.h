@@ -7,7 +7,7 @@
 
 #include "models/base/json_fwd.h"
 #include "models/base/random.h"
-#include "twin/round/attempt_facts.h"
+#include "twin/round/records/attempt_facts.h"
 #include "twin/statistics/rate.h"
 
 namespace tubetwin {
