@@ -203,9 +203,8 @@ void AddCompare(CLI::App& campaign, Common& common) {
       "compare",
       "Example: tubetwin campaign compare out/plus45 out/plus45_minus45\n\n"
       "Compares two campaigns of one seed variant by variant, or all variants within one, round by "
-      "round with "
-      "the same seed: exact McNemar tests with Holm's adjustment, differences with bootstrap "
-      "intervals.");
+      "round with the same seed: exact McNemar tests with Holm's adjustment, differences with "
+      "bootstrap intervals.");
   compare->add_option("folders", pair->folders, "One or two campaigns")
       ->required()
       ->expected(1, 2)
