@@ -7,6 +7,16 @@
 #include "models/base/error.h"
 
 namespace tubetwin {
+namespace {
+
+double DistanceToSegment(const Vector3& p, const Vector3& a, const Vector3& b) {
+  const Vector3 d = b - a;
+  const double length2 = d.squaredNorm();
+  const double t = length2 > 0.0 ? std::clamp(d.dot(p - a) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - t * d).norm();
+}
+
+}  // namespace
 
 std::vector<double> ArcLengths(const Polyline& line) {
   std::vector<double> out(line.size(), 0.0);
@@ -54,7 +64,7 @@ Polyline Simplified(const Polyline& line, double tolerance_m) {
     double max_off_m = tolerance_m;
     std::size_t at = from;
     for (std::size_t i = from + 1; i < to; ++i) {
-      const double off = Closest({line[from], line[to]}, line[i]).distance_m;
+      const double off = DistanceToSegment(line[i], line[from], line[to]);
       if (off <= max_off_m) continue;
       max_off_m = off;
       at = i;

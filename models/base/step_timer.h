@@ -4,6 +4,11 @@
 
 namespace tubetwin {
 
+/// Wall clock in seconds, from any origin: for reports only, no decision may read it.
+inline double WallClock_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 /// Wall time of the steps; never part of a result.
 class StepTimer {
  public:

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <vector>
 
+#include "models/base/step_timer.h"
 #include "planner/cycle/pick_cycle.h"
 #include "planner/grasp/gripper_boxes.h"
 #include "planner/grasp/held_part.h"
@@ -11,11 +11,6 @@
 #include "planner/motion/path_executor.h"
 
 namespace tubetwin {
-
-/// Wall clock of the pipeline's own computing, seconds. For reports only: no decision reads it.
-inline double ComputeClock_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Closed fingers with less between them hold nothing.
 inline constexpr double kNothingOpening_m = 0.004;

@@ -66,12 +66,12 @@ StepOutcome Push(CycleContext& c, const Nudge& nudge) {
 
 NudgeStep TryNudge(CycleContext& c, const PickProblem& problem) {
   if (static_cast<int>(c.report.nudges.size()) >= c.setup.planner.nudges) return {};
-  const double began = ComputeClock_s();
+  const double began = WallClock_s();
   const MotionPlanner& planner = c.executor.planner();
   const NudgeResult result =
       PlanNudge(problem, PathFeasibility(planner, c.cell.bin, c.setup.cycle, c.setup.part.radius_m),
                 NudgePathFeasibility(planner, c.cell.bin, c.setup.cycle, c.setup.planner));
-  c.report.compute_s.planning += ComputeClock_s() - began;
+  c.report.compute_s.planning += WallClock_s() - began;
   c.report.rejections.insert(c.report.rejections.end(), result.rejections.begin(),
                              result.rejections.end());
   if (!result.nudge) return {};

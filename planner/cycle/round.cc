@@ -155,7 +155,7 @@ PickProblem Round::Problem(const TubeScene& scene, const std::vector<Vector3>& p
 // before, else of the others. A path that is refused here costs nothing but the next plan.
 std::optional<Round::Decision> Round::ChoosePlan(const TubeScene& scene) {
   c_.observer.OnStep("planning");
-  const double began = ComputeClock_s();
+  const double began = WallClock_s();
   const std::vector<Vector3> points_N = VoxelDownsample(views_.clouds(), c_.cell.bin);
   const PickProblem problem = Problem(scene, points_N);
   PlanResult result = PlanPicks(
@@ -173,7 +173,7 @@ std::optional<Round::Decision> Round::ChoosePlan(const TubeScene& scene) {
     decision = Decision{{}, {}, std::move(plan), std::move(runnable->path), line_N};
   }
   c_.report.compute_s.evaluator += result.evaluator_s;
-  c_.report.compute_s.planning += ComputeClock_s() - began - result.evaluator_s;
+  c_.report.compute_s.planning += WallClock_s() - began - result.evaluator_s;
   c_.observer.OnScene(scene, decision ? &decision->plan : nullptr);
   return decision;
 }

@@ -136,12 +136,12 @@ StepOutcome ViewScheduler::Look() {
 }
 
 void ViewScheduler::Model() {
-  const double began = ComputeClock_s();
+  const double began = WallClock_s();
   const std::vector<OrganizedCloud> clouds = this->clouds();
   context_.observer.OnClouds(clouds);
   scene_ = Perceive(clouds, context_.setup.part, context_.cell.bin, context_.setup.perception,
                     context_.setup.parallelism);
-  context_.report.compute_s.modelling += ComputeClock_s() - began;
+  context_.report.compute_s.modelling += WallClock_s() - began;
 }
 
 }  // namespace tubetwin

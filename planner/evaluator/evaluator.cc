@@ -1,7 +1,6 @@
 #include "planner/evaluator/evaluator.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <numeric>
 
 #include "models/base/error.h"
+#include "models/base/step_timer.h"
 #include "models/base/text.h"
 #include "planner/evaluator/rollout.h"
 #include "planner/evaluator/rollout_scene.h"
@@ -22,10 +22,6 @@ using Status = CandidateScore::Status;
 
 constexpr double kMaxTurn_deg = 80.0;
 constexpr double kExtraCost_m = 1.0, kJamCost_m = 1.0, kDivergedCost_m = 10.0;
-
-double WallSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 int IndexOf(const TubeScene& scene, int id) {
   std::vector<std::string> known;
@@ -194,13 +190,13 @@ class Evaluation {
         samples_(request.samples) {}
 
   EvaluationResult Run() {
-    const double start_s = WallSeconds();
+    const double start_s = WallClock_s();
     result_.threads = options_.parallelism.threads;
     result_.candidates.resize(request_.candidates.size());
     std::vector<int> to_run = Prune();
     if (!to_run.empty()) {
       BuildScenes();
-      result_.settle_s = WallSeconds() - start_s;
+      result_.settle_s = WallClock_s() - start_s;
       RollOutAll(to_run);
     }
     for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
@@ -209,7 +205,7 @@ class Evaluation {
         result_.best = static_cast<int>(k);
       }
     }
-    result_.wall_s = WallSeconds() - start_s;
+    result_.wall_s = WallClock_s() - start_s;
     return std::move(result_);
   }
 
@@ -280,7 +276,7 @@ class Evaluation {
       const int candidate = to_run[task / samples_];
       const RolloutScene& scene = *scenes_[task % samples_];
       Worker& worker = workers[index];
-      const double start_s = WallSeconds();
+      const double start_s = WallClock_s();
       if (!worker.model) {
         worker.model.reset(mj_copyModel(nullptr, &scene.model()));
         worker.data = MakeData(*worker.model);
@@ -294,7 +290,7 @@ class Evaluation {
       }
       outcomes[task] =
           RollOut(scene, tube, share, motion, request_.full, config, *worker.model, *worker.data);
-      wall_s[task] = WallSeconds() - start_s;
+      wall_s[task] = WallClock_s() - start_s;
     });
     for (std::size_t k = 0; k < to_run.size(); ++k) {
       const auto from = static_cast<std::ptrdiff_t>(k) * samples_;

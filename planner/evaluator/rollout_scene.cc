@@ -39,7 +39,7 @@ PileTube TubeToBuild(const PerceivedTube& tube, const Part& part, const Vector3&
   // A tube of which only a part was seen weighs only that part: the rest is not in the scene.
   build.mass_kg = part.mass_kg * std::clamp(length_m / part.length_m, 0.1, 1.5);
   const Polyline line = part.is_hose() ? ResampleCount(tube.centerline_N, part.links + 1)
-                                       : Simplify(tube.centerline_N, kChord_m);
+                                       : Simplified(tube.centerline_N, kChord_m);
   build.centerline_N = Transformed(Translation(shift), line);
   return build;
 }

@@ -1,12 +1,12 @@
 #include "planner/pick/pick_planner.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <tuple>
 
 #include "models/base/error.h"
+#include "models/base/step_timer.h"
 #include "models/base/text.h"
 #include "planner/pick/rollout_scheduler.h"
 #include "planner/scene_query/removal_order.h"
@@ -15,10 +15,6 @@ namespace tubetwin {
 namespace {
 
 constexpr double kManyReleased = 3.0;
-
-double WallSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 struct Option {
   Rank rank = Rank::kCertainFree;
@@ -71,13 +67,13 @@ class PickPlanner {
         top_m_(TopOf(scene_)) {}
 
   PlanResult Run() {
-    const double start_s = WallSeconds();
+    const double start_s = WallClock_s();
     std::vector<Option> options = FreeOptions();
     TryAll(options, Rank::kCertainFree);
     if (result_.plans.empty()) TryCovered(options);
     Sort(options);
     TryAll(options, Rank::kJams);
-    result_.planning_s = WallSeconds() - start_s;
+    result_.planning_s = WallClock_s() - start_s;
     return std::move(result_);
   }
 

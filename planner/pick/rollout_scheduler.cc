@@ -1,11 +1,11 @@
 #include "planner/pick/rollout_scheduler.h"
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <limits>
 
 #include "models/base/error.h"
+#include "models/base/step_timer.h"
 #include "models/base/text.h"
 #include "planner/scene_query/sweep.h"
 
@@ -17,10 +17,6 @@ constexpr int kSamplesAtOnce = 2;  // A motion that is bad in one of them need n
 // simulated time is kept from first roll-outs for the samples of the best.
 constexpr std::size_t kAtOnce = 6;
 constexpr double kKeptForSamples = 0.3;
-double WallSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 // The score over the samples of both.
 CandidateScore Merged(CandidateScore score, const CandidateScore& more) {
   const double n = static_cast<double>(score.samples.size());
@@ -300,11 +296,11 @@ void RolloutScheduler::AddSamples(const std::vector<Scored*>& motions, int sampl
     request.candidates.push_back(scored->motion);
     request.grasp_at_m.push_back(scored->grasp_at_m);
   }
-  const double start_s = WallSeconds();
+  const double start_s = WallClock_s();
   const EvaluationResult answer =
       input_.evaluate(input_.problem.scene, input_.problem.part, input_.problem.bin, request);
   TT_CHECK(answer.candidates.size() == motions.size());
-  result_.evaluator_s += WallSeconds() - start_s;
+  result_.evaluator_s += WallClock_s() - start_s;
   result_.evaluation.settle_s += answer.settle_s;
   result_.evaluation.wall_s += answer.wall_s;
   result_.evaluation.threads = answer.threads;

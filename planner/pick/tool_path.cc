@@ -1,5 +1,7 @@
 #include "planner/pick/tool_path.h"
 
+#include "models/base/rotation.h"
+
 namespace tubetwin {
 namespace {
 
@@ -9,8 +11,7 @@ constexpr double kNoMove_m = 1e-9;
 
 /// The shortest turn, in N, that makes the tool point down.
 Eigen::AngleAxisd TurnDown(const RigidTransform& X_NE) {
-  return Eigen::AngleAxisd(
-      Eigen::Quaterniond::FromTwoVectors(X_NE.linear().col(2), -Vector3::UnitZ()));
+  return Eigen::AngleAxisd(RotationBetween(X_NE.linear().col(2), -Vector3::UnitZ()));
 }
 
 double AngleBetween(const RigidTransform& a, const RigidTransform& b) {

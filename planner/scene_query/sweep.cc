@@ -16,29 +16,6 @@ constexpr double kOverlap_m = 0.003;  // More than perception's error: one lies 
 constexpr double kFingers_m = 0.09;   // Length of the fingers over what they hold.
 constexpr double kNearer_m = 3e-4;    // Coming nearer by less than this is arithmetic, not a push.
 
-double DistanceToLine(const Vector3& p, const Vector3& a, const Vector3& b) {
-  const Vector3 d = b - a;
-  const double length2 = d.squaredNorm();
-  const double t = length2 > 0.0 ? std::clamp(d.dot(p - a) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - t * d).norm();
-}
-
-void KeepPoints(const Polyline& line, std::size_t from, std::size_t to, double tolerance_m,
-                std::vector<char>& keep) {
-  double farthest = tolerance_m;
-  std::size_t split = 0;
-  for (std::size_t i = from + 1; i < to; ++i) {
-    const double distance = DistanceToLine(line[i], line[from], line[to]);
-    if (distance <= farthest) continue;
-    farthest = distance;
-    split = i;
-  }
-  if (split == 0) return;
-  keep[split] = 1;
-  KeepPoints(line, from, split, tolerance_m, keep);
-  KeepPoints(line, split, to, tolerance_m, keep);
-}
-
 double Top(const Polyline& line) {
   double top = line.front().z();
   for (const Vector3& p : line) top = std::max(top, p.z());
@@ -98,7 +75,7 @@ std::vector<int> Touched(const TubeScene& scene, const TubePath& motion, const P
   for (const PerceivedTube& other : scene.tubes) {
     if (touched.size() == max_count) break;
     if (other.id == motion.tube) continue;
-    if (Touches(moving, Simplify(other.centerline_N, kChord_m), radius_m + other.radius_m, track,
+    if (Touches(moving, Simplified(other.centerline_N, kChord_m), radius_m + other.radius_m, track,
                 margin_m)) {
       touched.push_back(other.id);
     }
@@ -110,7 +87,7 @@ std::vector<int> TouchedByTube(const TubeScene& scene, const TubePath& motion, d
                                std::size_t max_count) {
   TT_CHECK(!motion.waypoints_N.empty());
   const PerceivedTube& tube = TubeOf(scene, motion.tube);
-  const Polyline moving = Simplify(tube.centerline_N, kChord_m);
+  const Polyline moving = Simplified(tube.centerline_N, kChord_m);
   return Touched(scene, motion, moving, tube.radius_m, TrackOf(motion, moving), margin_m,
                  max_count);
 }
@@ -120,18 +97,6 @@ std::optional<int> First(const std::vector<int>& ids) {
 }
 
 }  // namespace
-
-Polyline Simplify(const Polyline& line, double tolerance_m) {
-  if (line.size() < 3) return line;
-  std::vector<char> keep(line.size(), 0);
-  keep.front() = keep.back() = 1;
-  KeepPoints(line, 0, line.size() - 1, tolerance_m, keep);
-  Polyline out;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (keep[i]) out.push_back(line[i]);
-  }
-  return out;
-}
 
 std::optional<int> FirstTouched(const TubeScene& scene, const TubePath& motion, double margin_m) {
   return First(TouchedByTube(scene, motion, margin_m, 1));

@@ -7,10 +7,6 @@
 
 namespace tubetwin {
 
-/// The fewest of a line's own points from which no left-out point is farther than `tolerance_m`
-/// (Douglas and Peucker's method); both ends kept.
-Polyline Simplify(const Polyline& line, double tolerance_m);
-
 /// The first tube, in the scene's order, that a motion would touch: whether its surface comes
 /// within `margin_m` of the moving one's, or nearer still when they are that near at the start. A
 /// tube that only supports a lifted one is left without being touched; one that lies against a tube

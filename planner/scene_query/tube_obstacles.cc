@@ -33,7 +33,7 @@ TubeObstacles::TubeObstacles(const TubeScene& scene, const PerceivedTube& tube)
     : tube_(tube), points_(Resample(tube.centerline_N, kSample_m)) {
   for (const PerceivedTube& other : scene.tubes) {
     if (other.id == tube.id) continue;
-    const Polyline line = Simplify(other.centerline_N, kChord_m);
+    const Polyline line = Simplified(other.centerline_N, kChord_m);
     others_.push_back({line, other.radius_m, ClosestOfLines(tube.centerline_N, line).distance_m});
   }
 }
@@ -48,7 +48,7 @@ bool TubeObstacles::Covered(const Vector3& shift) const {
 }
 
 int TubeObstacles::NewlyTouched(const Vector3& shift) const {
-  const Polyline moving = Transformed(Translation(shift), Simplify(tube_.centerline_N, kChord_m));
+  const Polyline moving = Transformed(Translation(shift), Simplified(tube_.centerline_N, kChord_m));
   int count = 0;
   for (const Other& other : others_) {
     const double reach = tube_.radius_m + other.radius_m;

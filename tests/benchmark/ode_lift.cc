@@ -64,7 +64,7 @@ void OnNear(void* data, dGeomID a, dGeomID b) {
 
 dBodyID AddTube(World& world, const PileTube& tube) {
   const dBodyID body = dBodyCreate(world.world);
-  const Polyline line = Simplify(tube.centerline_N, kChord_m);
+  const Polyline line = Simplified(tube.centerline_N, kChord_m);
   const Vector3 centre = CurveCentre(line);
   dBodySetPosition(body, centre.x(), centre.y(), centre.z());
   const double length = Length(line);

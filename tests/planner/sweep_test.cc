@@ -26,12 +26,12 @@ TEST_CASE("A simplified line keeps its corners and stays within the tolerance", 
   for (int k = 0; k <= 90; ++k) {
     arc.push_back({0.1 * std::cos(Radians(k)), 0.1 * std::sin(Radians(k)), 0.0});
   }
-  const Polyline few = Simplify(arc, 0.001);
+  const Polyline few = Simplified(arc, 0.001);
   CHECK(few.size() < 12);
   CHECK(few.front() == arc.front());
   CHECK(few.back() == arc.back());
   for (const Vector3& p : arc) CHECK(Closest(few, p).distance_m <= 0.001);
-  CHECK(Simplify(StraightLine({0, 0, 0}, {1, 0, 0}), 1e-9).size() == 2);
+  CHECK(Simplified(StraightLine({0, 0, 0}, {1, 0, 0}), 1e-9).size() == 2);
 }
 
 TEST_CASE("Lifting the upper tube touches nothing, lifting the lower one meets it", "[unit]") {

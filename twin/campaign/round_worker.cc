@@ -8,19 +8,15 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <exception>
 
 #include "models/base/json.h"
+#include "models/base/step_timer.h"
 #include "twin/campaign/record_line.h"
 
 namespace tubetwin {
 namespace {
-
-double MonotonicNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Whether the error speaks of the machine rather than of the round: then running on is pointless,
 /// and a row about it would be wrong on another machine.
@@ -71,7 +67,7 @@ void Send(int fd, const Json& message) {
 
 RoundWorker::RoundWorker(const RoundTask& task, const RoundFunction& run,
                          const std::function<void()>& in_child)
-    : task_(task), began_s_(MonotonicNow()) {
+    : task_(task), began_s_(WallClock_s()) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) {
     throw Error(ErrorKind::kInternal, std::string("no pipe for a round: ") + std::strerror(errno));
@@ -110,7 +106,7 @@ RoundWorker::~RoundWorker() {
   ::close(fd_);
 }
 
-double RoundWorker::seconds() const { return MonotonicNow() - began_s_; }
+double RoundWorker::seconds() const { return WallClock_s() - began_s_; }
 
 std::optional<RoundWorker::Result> RoundWorker::Read() {
   char chunk[65536];

@@ -3,7 +3,6 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
 #include <filesystem>
 #include <memory>
@@ -11,6 +10,7 @@
 
 #include "models/base/files.h"
 #include "models/base/json.h"
+#include "models/base/step_timer.h"
 #include "twin/campaign/campaign_round.h"
 #include "twin/campaign/campaign_status.h"
 #include "twin/campaign/record_line.h"
@@ -23,14 +23,10 @@ constexpr int kPollMilliseconds = 200;  // How late a stop is noticed at most.
 constexpr double kStatusEvery_s = 10.0;
 constexpr int kTriesWhenKilled = 2;
 
-double MonotonicNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 class ShardRunner {
  public:
   ShardRunner(const Campaign& campaign, const RoundFunction& run, const CampaignRunOptions& options)
-      : campaign_(campaign), run_(run), options_(options), began_s_(MonotonicNow()) {
+      : campaign_(campaign), run_(run), options_(options), began_s_(WallClock_s()) {
     const CampaignIdentity identity = IdentityOf(campaign, options.program_version);
     ClaimCampaignFolder(options.out_folder, identity);
     std::vector<std::string> notes;
@@ -103,14 +99,14 @@ class ShardRunner {
   bool MayBegin() {
     if (!stopped_ && options_.stop_requested && options_.stop_requested()) {
       stopped_ = true;
-      grace_ends_s_ = MonotonicNow() + options_.grace_s;
+      grace_ends_s_ = WallClock_s() + options_.grace_s;
       Notice(workers_.empty()
                  ? "stopping"
                  : "stopping; the rounds in hand have " +
                        std::to_string(static_cast<int>(options_.grace_s)) + " s to end");
     }
     return !stopped_ && !refused_ &&
-           !(options_.limit_s && MonotonicNow() - began_s_ >= *options_.limit_s);
+           !(options_.limit_s && WallClock_s() - began_s_ >= *options_.limit_s);
   }
 
   void Begin(std::pair<RoundTask, int> next) {
@@ -131,7 +127,7 @@ class ShardRunner {
       if (workers_.empty()) break;
       Wait();
       ReadWorkers();
-      if (stopped_ && MonotonicNow() >= grace_ends_s_ && !workers_.empty()) {
+      if (stopped_ && WallClock_s() >= grace_ends_s_ && !workers_.empty()) {
         Notice(std::to_string(workers_.size()) + " rounds in hand did not end in time, dropped");
         workers_.clear();
       }
@@ -200,13 +196,13 @@ class ShardRunner {
     }
     writer_->Append(record);
     Count(record);
-    const double elapsed_s = MonotonicNow() - began_s_;
+    const double elapsed_s = WallClock_s() - began_s_;
     progress_.rounds_per_hour = 3600.0 * (progress_.done - found_) / elapsed_s;
     tell_next_s_ = 0.0;
   }
 
   void Tell() {
-    const double now = MonotonicNow();
+    const double now = WallClock_s();
     progress_.running = static_cast<int>(workers_.size());
     progress_.seconds_left = std::nullopt;
     if (progress_.rounds_per_hour > 0.0) {
@@ -223,7 +219,7 @@ class ShardRunner {
   void WriteStatus(const std::string& state) {
     progress_.running = static_cast<int>(workers_.size());
     WriteShardStatus(options_.out_folder, progress_, state);
-    status_next_s_ = MonotonicNow() + kStatusEvery_s;
+    status_next_s_ = WallClock_s() + kStatusEvery_s;
   }
 
   void TryWriteStatus(const std::string& state) {

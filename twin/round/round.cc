@@ -1,6 +1,5 @@
 #include "twin/round/round.h"
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
@@ -8,6 +7,7 @@
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
+#include "models/base/step_timer.h"
 #include "twin/round/failure_picture.h"
 #include "twin/round/replay_round.h"
 #include "twin/round/result_files.h"
@@ -18,10 +18,6 @@
 namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
-
-double WallNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// The cell and the scorer of a stored round, as they were where it was stored.
 void Resume(const RoundCheckpoint& held, TwinCell& twin, TwinRoundRecorder& recorder) {
@@ -108,7 +104,7 @@ std::string FailureFolderName(int row) {
 
 RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   RequireTwin(given, "this round");
-  const double began = WallNow();
+  const double began = WallClock_s();
   Scenario scenario = given;
   const std::optional<RoundCheckpoint> held =
       ReadRoundCheckpoint(scenario, options.scenario_folder);
@@ -150,7 +146,7 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   if (held) Resume(*held, twin, recorder);
   const Pipeline pipeline{scenario, resolved, asked.part, held, options};
   RoundResult result = RunPipeline(twin.cell(), pipeline, recorder);
-  const double cycle_wall_s = WallNow() - began;
+  const double cycle_wall_s = WallClock_s() - began;
   if (options.keep == RoundKeep::kAll ||
       (options.keep == RoundKeep::kFailures && recorder.AnyFailure())) {
     WriteRecord(recorder, options);
@@ -160,7 +156,7 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
 }
 
 RoundResult RunCellRound(Cell& cell, const Scenario& scenario, const RoundOptions& options) {
-  const double began = WallNow();
+  const double began = WallClock_s();
   const fs::path out(options.out_folder);
   const Part part = LoadPart(ScenarioPartName(scenario));
   const std::string resolved = ResolvedToml(scenario);
@@ -172,7 +168,7 @@ RoundResult RunCellRound(Cell& cell, const Scenario& scenario, const RoundOption
   RoundRecorder recorder(RoundScorer(), options);
   const Pipeline pipeline{scenario, resolved, part, std::nullopt, options};
   RoundResult result = RunPipeline(cell, pipeline, recorder);
-  const double cycle_wall_s = WallNow() - began;
+  const double cycle_wall_s = WallClock_s() - began;
   if (options.keep == RoundKeep::kAll && options.write_report) {
     options.write_report(options.out_folder);
   }

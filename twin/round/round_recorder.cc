@@ -1,28 +1,22 @@
 #include "twin/round/round_recorder.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <utility>
 
 #include "models/base/cloud/cloud.h"
 #include "models/base/json.h"
+#include "models/base/step_timer.h"
 #include "twin/cell/truth.h"
 #include "twin/render/picture_points.h"
 #include "twin/round/replay_round.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;
-namespace {
-
-double WallNow() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 RoundRecorder::RoundRecorder(RoundScorer scorer, const RoundOptions& options)
-    : options_(options), scorer_(std::move(scorer)), attempt_began_(WallNow()) {}
+    : options_(options), scorer_(std::move(scorer)), attempt_began_(WallClock_s()) {}
 
 void RoundRecorder::OnStep(const std::string& caption) {
   if (tape != nullptr) tape->Caption(caption);
@@ -36,7 +30,7 @@ void RoundRecorder::OnAttemptEnd(const AttemptReport& report) {
   attempts.push_back(scorer_.Score(report));
   if (tape != nullptr) tape->Result(BelievedAttempt(report));
   if (options_.replay != nullptr) options_.replay->Result(BelievedAttempt(report));
-  const double now = WallNow();
+  const double now = WallClock_s();
   timings.push_back({report.attempt, report.compute_s, now - attempt_began_});
   attempt_began_ = now;
   const bool failed = !attempts.back().success.value_or(report.outcome == AttemptOutcome::kPlaced);
