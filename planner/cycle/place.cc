@@ -12,7 +12,6 @@ constexpr double kAbovePlace_m = 0.20;     ///< Last weighing: above all that li
 constexpr double kGuardedPlace_m = 0.035;  ///< From here on what lies on the tray may be met.
 constexpr double kWeighAbove_s = 0.3;
 
-constexpr double kTruthDelay_s = 2.0;  ///< A hose that lay on others rocks before it rests.
 constexpr int kMaxSlotsTried = 6;
 
 enum PlaceStage { kCarryStage, kLowerStage, kReleaseStage, kRetreatStage };
@@ -114,13 +113,9 @@ PlaceStep Place(CycleContext& c, const Polyline& line_E) {
   c.Released();
   c.placed_T.push_back(placement.pose.line_T);
   c.report.slot_centre_T = placement.pose.slot_centre_T;
-  const TimeNs at = c.cell.clock.Now();
   StepOutcome up = c.Run(placement.path, kRetreatStage);
   // Every way to the next place begins by going up: a refusal costs nothing.
   if (!up.ok() && !up.refused()) return {up};
-  const CycleContext::Timed timed(c, &AttemptReport::SimTime::move);
-  const double since_s = Seconds(c.cell.clock.Now() - at);
-  if (since_s < kTruthDelay_s) Wait(c.cell, kTruthDelay_s - since_s);
   return {{}, AttemptOutcome::kPlaced};
 }
 

@@ -76,11 +76,13 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
   if (cell_recorder) EndRecording(*cell_recorder, report);
   if (options.replay != nullptr) EndReplay(*options.replay, report);
 
+  const double sim_s = Seconds(plain.clock.Now());
+  recorder.Finish();
   RoundResult result;
   result.interrupted = report.end == RoundEnd::kInterrupted;
   result.faulted = report.end == RoundEnd::kFault;
   result.record.seed = pipeline.scenario.seed;
-  result.record.summary = recorder.Summary(report, Seconds(plain.clock.Now()));
+  result.record.summary = recorder.Summary(report, sim_s);
   result.record.attempts = recorder.attempts;
   result.record.timings = recorder.timings;
   WriteRoundRecord(result.record, options.out_folder);

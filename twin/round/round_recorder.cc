@@ -13,7 +13,13 @@
 
 namespace tubetwin {
 namespace fs = std::filesystem;
-namespace {}  // namespace
+namespace {
+
+/// From the end of an attempt to the look at what came of it. The fingers let go before they go up,
+/// which takes a second itself: a hose that lay on others rocks until about two seconds later.
+constexpr TimeNs kUntilLook = std::chrono::seconds(1);
+
+}  // namespace
 
 RoundRecorder::RoundRecorder(RoundScorer scorer, const RoundOptions& options)
     : options_(options), scorer_(std::move(scorer)), attempt_began_(WallClock_s()) {}
@@ -27,13 +33,18 @@ void RoundRecorder::OnStep(const std::string& caption) {
 }
 
 void RoundRecorder::OnAttemptEnd(const AttemptReport& report) {
-  attempts.push_back(scorer_.Score(report));
+  attempts.push_back(scorer_.Believed(report));
   if (tape != nullptr) tape->Result(BelievedAttempt(report));
   if (options_.replay != nullptr) options_.replay->Result(BelievedAttempt(report));
   const double now = WallClock_s();
   timings.push_back({report.attempt, report.compute_s, now - attempt_began_});
   attempt_began_ = now;
-  const bool failed = !attempts.back().success.value_or(report.outcome == AttemptOutcome::kPlaced);
+  if (!scorer_.sees_truth()) Conclude();
+}
+
+void RoundRecorder::Conclude() {
+  const AttemptRecord& last = attempts.back();
+  const bool failed = !last.success.value_or(last.outcome == AttemptOutcome::kPlaced);
   if (options_.keep != RoundKeep::kRows && failed) SaveFailure();
 }
 
@@ -88,9 +99,23 @@ void TwinRoundRecorder::OnReference(const Wrench& reference_K) {
 }
 
 void TwinRoundRecorder::OnAttemptEnd(const AttemptReport& report) {
+  LookAtTruth();  // Of the attempt before, where two end within the same second.
   recording_.attempt_ends.push_back(static_cast<int>(recording_.frames.size()));
   RoundRecorder::OnAttemptEnd(report);
   recording_.overlays.push_back({});  // What was seen is stale now.
+  look_ = Look{report, twin_.cell().clock.Now() + kUntilLook};
+}
+
+void TwinRoundRecorder::LookAtTruth() {
+  if (!look_) return;
+  scorer_.AddTruth(look_->report, attempts.back());
+  look_.reset();
+  Conclude();
+}
+
+void TwinRoundRecorder::Finish() {
+  if (look_) twin_.cell().clock.AdvanceTo(look_->due);
+  LookAtTruth();  // Unless a frame on the way was due.
 }
 
 void TwinRoundRecorder::OnFailure(const std::string& folder) {
@@ -107,6 +132,7 @@ void TwinRoundRecorder::AddFrame() {
   frame.overlay = static_cast<int>(recording_.overlays.size()) - 1;
   frame.caption = static_cast<int>(recording_.captions.size()) - 1;
   recording_.frames.push_back(std::move(frame));
+  if (look_ && twin_.cell().clock.Now() >= look_->due) LookAtTruth();
 }
 
 }  // namespace tubetwin

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ class RoundRecorder : public CycleObserver {
   void OnDetection(const Detection&) override { scorer_.AtDetection(); }
   void OnAttemptEnd(const AttemptReport& report) override;
 
+  /// After the last attempt: completes its record, if need be by letting time pass.
+  virtual void Finish() {}
   RoundSummary Summary(const RoundReport& report, double sim_s) const {
     return scorer_.Summary(report, attempts, sim_s);
   }
@@ -36,6 +39,8 @@ class RoundRecorder : public CycleObserver {
  protected:
   /// An attempt failed; its row is the last. `folder` exists and holds attempt.json and clouds.
   virtual void OnFailure(const std::string& /*folder*/) {}
+  /// The last record is complete: keeps what a failed attempt leaves.
+  void Conclude();
 
   const RoundOptions& options_;
   RoundScorer scorer_;
@@ -46,7 +51,8 @@ class RoundRecorder : public CycleObserver {
   double attempt_began_ = 0.0;
 };
 
-/// The same in the twin: rows by truth, and what the world looked like.
+/// The same in the twin: rows by truth, and what the world looked like. Truth is looked at a while
+/// after an attempt's end, when what it let go of has come to rest; the pipeline goes on meanwhile.
 class TwinRoundRecorder : public RoundRecorder {
  public:
   TwinRoundRecorder(TwinCell& twin, const Pile& pile, std::vector<Recording::Visual> visuals,
@@ -57,6 +63,7 @@ class TwinRoundRecorder : public RoundRecorder {
   void OnReference(const Wrench& reference_K) override;
   void OnSeveral(const AttemptCheckpoint& state) override { on_several(state, scorer_.state()); }
   void OnAttemptEnd(const AttemptReport& report) override;
+  void Finish() override;
 
   void Resume(const ScorerState& scorer) { scorer_.Restore(scorer); }
   const Recording& recording() const { return recording_; }
@@ -67,11 +74,17 @@ class TwinRoundRecorder : public RoundRecorder {
  private:
   void OnFailure(const std::string& folder) override;
   void AddFrame();
+  void LookAtTruth();
 
   TwinCell& twin_;
   Recording recording_;
   Wrench reference_K_;
   bool tared_ = false;
+  struct Look {
+    AttemptReport report;
+    TimeNs due{0};
+  };
+  std::optional<Look> look_;  ///< Still to come, for the last record.
 };
 
 }  // namespace tubetwin

@@ -1,7 +1,9 @@
 #include "twin/round/scoring.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "models/base/error.h"
 #include "models/base/json.h"
 #include "planner/grasp/placement.h"
 #include "twin/round/records/json_fields.h"
@@ -55,7 +57,8 @@ void RoundScorer::AtDetection() {
   if (truth_) held_at_detection_ = truth_->Held();
 }
 
-AttemptTruth RoundScorer::TruthAfter(const AttemptReport& report, bool& success) {
+void RoundScorer::AddTruth(const AttemptReport& report, AttemptRecord& record) {
+  TT_CHECK(truth_);
   const std::vector<Truth::Tube> tubes = truth_->Tubes();
   const TrayCount tray = CountTray(tubes, now_.tray);
   AttemptTruth out;
@@ -74,13 +77,13 @@ AttemptTruth RoundScorer::TruthAfter(const AttemptReport& report, bool& success)
     }
   }
   out.placed_ids = tray.placed_ids;
-  success = report.outcome == AttemptOutcome::kPlaced && added == 1 &&
-            out.outside_ids.size() <= now_.outside_ids.size();
+  record.success = report.outcome == AttemptOutcome::kPlaced && added == 1 &&
+                   out.outside_ids.size() <= now_.outside_ids.size();
   now_ = {tray, out.outside_ids};
-  return out;
+  record.truth = std::move(out);
 }
 
-AttemptRecord RoundScorer::Score(const AttemptReport& report) {
+AttemptRecord RoundScorer::Believed(const AttemptReport& report) {
   AttemptRecord out;
   out.attempt = report.attempt;
   out.tubes_in_bin = report.tubes_in_bin;
@@ -97,13 +100,7 @@ AttemptRecord RoundScorer::Score(const AttemptReport& report) {
   out.outcome = report.outcome;
   out.reason = report.reason;
   out.sim_s = report.sim_s;
-  if (truth_) {
-    bool success = false;
-    out.truth = TruthAfter(report, success);
-    out.success = success;
-  } else if (!tubes_start_) {
-    tubes_start_ = report.tubes_in_bin;
-  }
+  if (!tubes_start_) tubes_start_ = report.tubes_in_bin;
   return out;
 }
 

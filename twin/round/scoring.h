@@ -44,15 +44,17 @@ class RoundScorer {
 
   /// At the decision how many tubes hang in the fingers.
   void AtDetection();
-  /// At the end of an attempt (at least one second after a release): its row for picks.jsonl.
-  AttemptRecord Score(const AttemptReport& report);
+  /// What the pipeline says of an attempt that has just ended: its record without truth.
+  AttemptRecord Believed(const AttemptReport& report);
+  /// Adds the truth, once what was let go of has come to rest. Looks come in the order of the
+  /// attempts. Only with truth.
+  void AddTruth(const AttemptReport& report, AttemptRecord& record);
+  bool sees_truth() const { return truth_.has_value(); }
   /// After the last attempt. `attempts`: all of the round's.
   RoundSummary Summary(const RoundReport& report, const std::vector<AttemptRecord>& attempts,
                        double sim_s) const;
 
  private:
-  AttemptTruth TruthAfter(const AttemptReport& report, bool& success);
-
   std::optional<Truth> truth_;
   RigidTransform X_TB_ = RigidTransform::Identity();
   std::optional<int> tubes_start_;  ///< Without truth: what the first look found.
