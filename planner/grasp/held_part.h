@@ -5,8 +5,8 @@
 
 namespace tubetwin {
 
-/// How a held part bends and swings: each side of the grasp is a cantilever of the part's nominal bending
-/// stiffness and mass per length, clamped between the pads (Euler and Bernoulli's beam).
+/// How a held part bends and swings: each side of the grasp is a cantilever of the part's nominal
+/// bending stiffness and mass per length, clamped between the pads (Euler and Bernoulli's beam).
 struct HeldPart {
   double sag_m = 0.0;     ///< Of the longer side's end under its own weight; 0: rigid.
   double period_s = 0.0;  ///< Of the longer side's first mode; 0: rigid.
