@@ -43,7 +43,7 @@ std::vector<Course> Courses() {
        [](FakeWorld& world) { world.After(MotionKind::kTilt, 1, [&world] { world.Fall(2); }); }},
       {"the one that was left is lost on the way", [](FakeWorld& world) {
          world.After(MotionKind::kTilt, 1, [&world] { world.Fall(1); });
-         world.During(MotionKind::kCarry, 1, [&world] { world.Fall(1); });
+         world.During(MotionKind::kCarry, 2, [&world] { world.Fall(1); });
        }}};
 }
 
@@ -61,6 +61,13 @@ std::string Text(const AttemptReport& report) {
   return out;
 }
 
+/// Three tubes, of which the first is placed and the next grasp takes two.
+std::vector<Polyline> ThreeTubes() {
+  std::vector<Polyline> tubes = TwoTubes();
+  tubes.push_back(StraightLine({-0.12, 0.02, 0.0125}, {0.11, 0.0, 0.0125}));
+  return tubes;
+}
+
 TEST_CASE("A stored attempt goes on as if it had never been stored, with every strategy",
           "[unit]") {
   for (const ResolutionStrategy& each : ResolutionStrategies()) {
@@ -68,15 +75,17 @@ TEST_CASE("A stored attempt goes on as if it had never been stored, with every s
     for (const Course& course : Courses()) {
       CAPTURE(strategy, course.name);
       // Without a break.
-      FakeWorld whole_world(TwoTubes());
+      FakeWorld whole_world(ThreeTubes());
+      whole_world.Grab(1);
       whole_world.Grab(2);
       course.script(whole_world);
       FakeRound whole(whole_world);
       whole.setup.resolution.strategy = strategy;
-      whole.Run(1);
+      whole.Run(2);
 
       // Stored, and gone on with by another cycle on the cell as it stands.
-      FakeWorld world(TwoTubes());
+      FakeWorld world(ThreeTubes());
+      world.Grab(1);
       world.Grab(2);
       course.script(world);
       FakeRound stored(world);
@@ -92,7 +101,7 @@ TEST_CASE("A stored attempt goes on as if it had never been stored, with every s
 
       CHECK(rest.end() == "stored");
       REQUIRE(rest.notes.attempts.size() == 1);
-      CHECK(Text(rest.attempt(0)) == Text(whole.attempt(0)));
+      CHECK(Text(rest.attempt(0)) == Text(whole.attempt(1)));
       CHECK(rest.report.placed_believed == whole.report.placed_believed);
       CHECK(world.log == whole_world.log);  // Every command, number by number.
     }

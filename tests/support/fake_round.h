@@ -18,6 +18,7 @@ class CycleNotes : public CycleObserver {
   void OnScene(const TubeScene& scene, const PickPlan* plan) override {
     scenes.push_back(scene);
     if (plan != nullptr) plans.push_back(*plan);
+    if (on_scene) on_scene();
     if (plan != nullptr && on_plan) on_plan();
   }
   void OnReference(const Wrench& reference_K) override { references_K.push_back(reference_K); }
@@ -27,7 +28,7 @@ class CycleNotes : public CycleObserver {
     attempts.push_back(report);
     if (on_attempt_end) on_attempt_end();
   }
-  std::function<void()> on_plan, on_attempt_end;  ///< For scripts; may be empty.
+  std::function<void()> on_scene, on_plan, on_attempt_end;  ///< For scripts; may be empty.
 
   std::vector<std::string> steps;
   std::vector<TubeScene> scenes;

@@ -23,6 +23,7 @@ constexpr double kReleased_m = 0.005;  ///< Wider than the tube by so much, the 
 constexpr double kMet_N = 20.0;        ///< Of a rigid thing.
 constexpr double kPressed_N = 6.0;     ///< Of a tube under the closed fingers.
 constexpr double kRolls = 0.5;         ///< A tube under moving fingers goes half as far.
+constexpr double kSwingPeriod_s = 0.8, kSwingFades_s = 0.3;
 const Vector3 kToolCentre_K(0, 0, 0.06);
 
 std::string Text(const char* format, double value) {
@@ -195,6 +196,7 @@ void FakeWorld::Pass() {
   }
   const ArmState state = arm.State();
   if (state.mode == ArmMode::kMoving) return;
+  at_rest_since_ = clock.Now();
   const FakeMotion ended = *std::exchange(running_, std::nullopt);
   Roll(ended.X_BE_from.translation(), PoseOfE(state.q).translation());
   if (state.done) Happen(true);
@@ -260,6 +262,7 @@ void FakeWorld::Open() {
     tubes[i].place = region == Region::kBin    ? FakeTube::Place::kBin
                      : region == Region::kTray ? FakeTube::Place::kTray
                                                : FakeTube::Place::kLost;
+    tubes[i].line_T = Transformed(cell.layout.X_BT.inverse() * X_BE_now, tubes[i].line_E);
   }
   held_.clear();
 }
@@ -330,6 +333,9 @@ Wrench FakeWorld::Weigh() {
   if (!held_.empty() && X_NE_now.translation().z() > closed_at_m_ + kLifted_m) {
     out.force_N += static_cast<double>(held_.size()) * part.mass_kg * g_K;
     out.torque_Nm += HeldTorque_K();
+    const double t_s = Seconds(clock.Now() - at_rest_since_);
+    out.force_N += swing_N * std::cos(2 * kPi * t_s / kSwingPeriod_s) *
+                   std::exp(-t_s / kSwingFades_s) * g_K.normalized();
   }
   if (held_.empty()) {
     const bool met = obstacle_height_m && X_NE_now.translation().z() <= *obstacle_height_m;

@@ -47,6 +47,7 @@ struct FakeTube {
   enum class Place { kBin, kFingers, kTray, kLost } place = Place::kBin;
   Polyline line_N;  ///< As it lies, or lay, in the bin.
   Polyline line_E;  ///< As it hangs in the fingers.
+  Polyline line_T;  ///< As it was laid on the tray.
 };
 
 /// A bin of tubes around a FakeCell: enough of a world for the pick cycle to empty, without
@@ -84,6 +85,8 @@ class FakeWorld : public FakeCell {
   void After(MotionKind kind, int nth, std::function<void()> happens);
   /// A rigid thing that the empty fingers meet when E comes down to this height over the floor.
   std::optional<double> obstacle_height_m;
+  /// After each motion what hangs in the fingers swings up and down, so strongly at first.
+  double swing_N = 0.0;
   /// How far a tube on which closed fingers press goes with them: half as far, as it rolls.
   double rolls = 0.5;
   /// Things in the bin that are no tubes.
@@ -145,6 +148,7 @@ class FakeWorld : public FakeCell {
   std::vector<std::size_t> held_;  ///< Indices of tubes, in the order in which they were taken.
   double closed_at_m_ = 0.0;       ///< Height of E over the floor when the fingers closed.
   std::optional<FakeMotion> running_;
+  TimeNs at_rest_since_{0};
   bool half_over_ = false;
   bool pressing_ = false;  ///< The closed fingers pressed on a tube when the motion began.
 };
