@@ -34,8 +34,9 @@ TEST_CASE("Where the tray is out of reach the tube goes back, and six times are 
   round.Run();
   INFO(round.attempts_text());
   CHECK(round.end() == "no_plan");
-  CHECK(round.notes.attempts.size() == 6);
-  for (std::size_t k = 0; k < 5; ++k) {
+  CHECK_THAT(round.report.reason, Catch::Contains("no slot of the tray is in reach"));
+  REQUIRE(round.notes.attempts.size() == 6);
+  for (std::size_t k = 0; k < 6; ++k) {
     CHECK(round.outcome(k) == "put_back");
     CHECK_THAT(round.attempt(k).reason, Catch::Contains("no slot of the tray is in reach"));
     CHECK(round.attempt(k).attempt == static_cast<int>(k) + 1);
@@ -81,6 +82,41 @@ TEST_CASE("A refused motion with empty fingers leads to the next plan, never to 
     CHECK(attempt.outcome != AttemptOutcome::kFault);
   }
   CHECK(world.Count(FakeTube::Place::kTray) == 2);
+}
+
+/// Ends the trouble that a test made as soon as the cycle puts back what it holds.
+class EndsWhenPutBack : public test::CycleNotes {
+ public:
+  explicit EndsWhenPutBack(std::function<void()> end) : end_(std::move(end)) {}
+  void OnStep(const std::string& caption) override {
+    if (caption == "putting back") end_();
+  }
+
+ private:
+  std::function<void()> end_;
+};
+
+TEST_CASE("What is refused over the tray goes back to the bin, not down where it is", "[unit]") {
+  FakeWorld world(TwoTubes());
+  FakeRound round(world);
+  const ArmModel whole = world.arm_model;
+  // Pushed over the tray, where joint 2 loses what it needs to go down.
+  world.After(MotionKind::kCarry, 1, [&] {
+    world.arm.pushed.setConstant(0.002);
+    world.arm_model.joints[1].upper_rad = world.arm.State().q[1] - 0.3;
+  });
+  EndsWhenPutBack notes([&] {
+    world.arm.pushed.setZero();
+    world.arm_model = whole;
+  });
+  round.setup.stop_requested = [&] { return notes.attempts.size() == 2; };
+  RunPickCycle(world.cell, round.setup, notes);
+  round.CheckFaults();
+  REQUIRE(notes.attempts.size() == 2);
+  CHECK(notes.attempts[0].outcome == AttemptOutcome::kPutBack);
+  CHECK(notes.attempts[1].outcome == AttemptOutcome::kPlaced);
+  CHECK(world.Count(FakeTube::Place::kTray) == 1);
+  CHECK(world.Count(FakeTube::Place::kBin) == 1);
 }
 
 TEST_CASE("A stop ends the round where it is if nobody is there or the person says so", "[unit]") {

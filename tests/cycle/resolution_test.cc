@@ -67,6 +67,13 @@ void CheckEnds(const FakeRound& round, const Strategy& strategy, const std::stri
   CHECK(round.outcome(1) == "placed");
 }
 
+TEST_CASE("Every strategy of the registry is tried here", "[unit]") {
+  std::vector<std::string> tried, known;
+  for (const Strategy& strategy : AllStrategies()) tried.push_back(strategy.name);
+  for (const ResolutionStrategy& strategy : ResolutionStrategies()) known.push_back(strategy.name);
+  CHECK(tried == known);
+}
+
 TEST_CASE("Several that stay in the fingers are put back, whatever was tried", "[unit]") {
   for (const Strategy& strategy : AllStrategies()) {
     CAPTURE(strategy.name);

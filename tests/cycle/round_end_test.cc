@@ -170,6 +170,28 @@ TEST_CASE("After a placed tube only the views that saw it are taken again", "[un
   CHECK(world.Count(FakeTube::Place::kTray) == 2);
 }
 
+TEST_CASE("What touched the taken tube may have moved: views that see it are taken again too",
+          "[unit]") {
+  const double wall_y = 0.15 - kRadius - 0.001;
+  for (const bool touches : {true, false}) {
+    CAPTURE(touches);
+    // The tube along the wall cannot be grasped, and reaches to where the taken one is not seen.
+    const double end_y = wall_y - 2 * kRadius - (touches ? 0.003 : 0.030);
+    FakeWorld world({StraightLine({-0.20, end_y - 0.24, kRadius}, {-0.20, end_y, kRadius}),
+                     StraightLine({-0.21, wall_y, kRadius}, {0.03, wall_y, kRadius})},
+                    LongBin());
+    FakeRound round(world);
+    round.setup.scan.overhead_m = 0.0;
+    std::vector<int> scans;
+    round.notes.on_scene = [&] { scans.push_back(world.scans); };
+    round.Run();
+    INFO(round.attempts_text());
+    REQUIRE(round.outcome(0) == "placed");
+    REQUIRE(scans.size() >= 2);
+    CHECK(scans[1] - scans[0] == (touches ? 3 : 2));
+  }
+}
+
 TEST_CASE("With rescan_all, and after an attempt that failed, every view is taken again",
           "[unit]") {
   for (const bool all : {true, false}) {
