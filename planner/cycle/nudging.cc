@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "planner/cycle/round_steps.h"
 #include "planner/pick/make_path.h"
@@ -12,14 +13,14 @@ constexpr double kWindow_s = 0.05;  ///< Averaging out the sensor's noise.
 /// Presses and drags; what was felt goes into the report.
 StepOutcome RunStroke(CycleContext& c, const CheckedPath& path, int stroke,
                       const Wrench& unloaded_K, NudgeReport& report) {
-  const StepOutcome press = c.Run(path, NudgeStage(stroke, StrokeStage::kPress));
+  StepOutcome press = c.Run(path, NudgeStage(stroke, StrokeStage::kPress));
   if (!press.ok()) return press;
   report.contact = report.contact || press.contact();
   const MeanWrench load = MeasureWrench(c, kWindow_s);
   if (!load.step.ok()) return load.step;
   report.press_N = std::max(report.press_N, (load.mean_K - unloaded_K).force_N.norm());
   const Vector3 from_B = c.executor.X_BE().translation();
-  const StepOutcome drag = c.Run(path, NudgeStage(stroke, StrokeStage::kDrag));
+  StepOutcome drag = c.Run(path, NudgeStage(stroke, StrokeStage::kDrag));
   if (!drag.ok()) return drag;
   report.stopped = report.stopped || drag.contact();
   report.travel_m += (c.executor.X_BE().translation() - from_B).norm();
@@ -40,7 +41,7 @@ StepOutcome RunStrokes(CycleContext& c, const CheckedPath& path, int strokes, Nu
 /// Runs a nudge. What is refused on the way ends it where it is, and is in the report.
 StepOutcome Push(CycleContext& c, const Nudge& nudge) {
   c.observer.OnStep("nudging tube " + std::to_string(nudge.tube) + " by " +
-                    std::to_string(static_cast<int>(1e3 * nudge.travel_m + 0.5)) + " mm");
+                    std::to_string(std::lround(1e3 * nudge.travel_m)) + " mm");
   NudgeReport report;
   report.tube = nudge.tube;
   report.direction_N = nudge.direction_N;

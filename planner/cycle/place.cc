@@ -34,7 +34,9 @@ PickPath MakePlacePath(const CycleContext& c, const PlacementPose& pose) {
   path.NextStage();
   path.Open("letting go", c.ReleaseOpening());
   path.NextStage();
-  path.Line("up", By(Vector3(0, 0, kRetreat_m)));
+  // Nothing swings any more.
+  path.Add("up", NearGrasp(config.approach_speed_m_s, config.transfer_acceleration_m_s2),
+           Follow{{By(Vector3(0, 0, kRetreat_m))}});
   return path.path();
 }
 
