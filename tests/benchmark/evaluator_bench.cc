@@ -129,7 +129,7 @@ void Measure(const Case& which, int piles, int repeats) {
       if (part.is_hose()) continue;
       double ode = 0.0;
       for (int k = 0; k < which.count; ++k) {
-        ode += LiftInOde(pile, k, ExtractionConfig().lift_m, PlannerConfig().lift_speed_m_s,
+        ode += LiftInOde(pile, k, ExtractionConfig().lift_m, ExtractionConfig().lift_speed_m_s,
                          EvaluatorConfig().hold_s)
                    .wall_s;
       }
