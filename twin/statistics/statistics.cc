@@ -35,14 +35,6 @@ Counts Total(const std::vector<Counts>& clusters) {
   return sum;
 }
 
-ShareInterval ClopperPearson95(int k, int n) {
-  TT_CHECK(0 <= k && k <= n);
-  if (n == 0) return {};
-  using Binomial = boost::math::binomial_distribution<double>;
-  return {k == 0 ? 0.0 : Binomial::find_lower_bound_on_p(n, k, kTail),
-          k == n ? 1.0 : Binomial::find_upper_bound_on_p(n, k, kTail)};
-}
-
 ShareInterval ClusterBootstrap95(const std::vector<Counts>& clusters, RandomStream random,
                                  int resamples) {
   const Interval found = Bootstrap95(

@@ -18,10 +18,6 @@ struct Counts {
 /// Sum over clusters.
 Counts Total(const std::vector<Counts>& clusters);
 
-/// 95 % interval that covers at least that often whatever the share is (Clopper and Pearson 1934).
-/// n = 0: [0, 1]. Precondition: 0 <= k <= n.
-ShareInterval ClopperPearson95(int k, int n);
-
 /// 95 % percentile interval of sum k / sum n by drawing whole clusters with replacement (Efron and
 /// Tibshirani 1993, 13.3), so that dependence within a cluster widens it. `random` is taken by
 /// value: same stream, same interval. Says nothing of its own when all clusters agree (the interval
