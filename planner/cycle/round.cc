@@ -235,13 +235,13 @@ Weighing Round::LiftAndWeigh(const Decision& decision) {
   c_.cell.arm.SetPayload(c_.setup.part.mass_kg, c_.cell.layout.X_FE.translation());
   c_.observer.OnStep("lifting 3 cm");
   if (StepOutcome step = c_.Run(path, kFirstLiftStage); !step.ok()) return {step, {}};
-  const Weighing first = Weigh(c_, kFirstSettle_s);
+  Weighing first = Weigh(c_, kFirstSettle_s);
   if (!first.step.ok()) return first;
   c_.report.first_weighing = first.detection;
   c_.observer.OnStep("lifting (" + decision.plan.motion.name + ")");
   if (StepOutcome step = c_.Run(path, kMotionStage); !step.ok()) return {step, {}};
   c_.observer.OnStep("weighing");
-  const Weighing weighing = Weigh(c_, c_.setup.cycle.settle_s);
+  Weighing weighing = Weigh(c_, c_.setup.cycle.settle_s);
   if (!weighing.step.ok()) return weighing;
   c_.report.detection = weighing.detection;
   c_.observer.OnDetection(weighing.detection);
