@@ -6,7 +6,6 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRetreat_m = 0.15;
 constexpr double kPlaceGap_m = 0.003;      ///< E stops this far above touching the tray.
 constexpr double kAbovePlace_m = 0.20;     ///< Last weighing: above all that lies on the tray.
 constexpr double kGuardedPlace_m = 0.035;  ///< From here on what lies on the tray may be met.

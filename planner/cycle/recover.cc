@@ -7,7 +7,6 @@ namespace tubetwin {
 namespace {
 
 constexpr double kRetreatSpeed_m_s = 0.1, kRetreatAcceleration_m_s2 = 0.5;
-constexpr double kRetreat_m = 0.15;
 constexpr double kOverRim_m = 0.10;    ///< Down to here what hangs cannot touch the pile.
 constexpr double kOverFloor_m = 0.05;  ///< The lowest that the fingers go to let something go.
 constexpr double kLowerSpeed_m_s = 0.05;

@@ -9,6 +9,9 @@ namespace tubetwin {
 
 // Steps of a round that have a file of their own: resolve.cc, place.cc, recover.cc, nudging.cc.
 
+/// The fingers go up so far after they let something go.
+inline constexpr double kRetreat_m = 0.15;
+
 /// How many hang in the fingers after a step that moved them.
 struct HeldStep {
   StepOutcome step;
