@@ -10,17 +10,13 @@
 #include <array>
 
 #include "models/base/error.h"
-#include "models/gripper_spec.h"
 
 namespace tubetwin {
 namespace {
 
-using Shape = ClearanceChecker::Shape;
-
-constexpr int kFlange = 7;
-constexpr int kNumBodies = 8;              // base, links 1 to 6, flange
-constexpr double kFingerLength_m = 0.075;  // from the pads' lower edge towards the palm
-constexpr double kSlab_m = 0.10;           // floor, tray and plate are at least this thick
+constexpr int kNumBodies = 8;         // base, links 1 to 6, flange
+constexpr double kPlateHalf_m = 2.0;  // the plate goes on as floor
+constexpr double kSlab_m = 0.10;      // floor, tray and plate are at least this thick
 
 /// Bodies of one arm that can meet: everything else the joints hold apart, or they are neighbours.
 constexpr std::array<std::array<int, 2>, 14> kSelfPairs = {{{7, 0},
@@ -51,22 +47,6 @@ std::shared_ptr<fcl::CollisionGeometryd> Geometry(const Shape& shape) {
       break;
   }
   return std::make_shared<fcl::Sphered>(s.x());
-}
-
-/// Half sizes of the box around a shape, in its own axes.
-Vector3 HalfExtent(const Shape& shape) {
-  const Vector3& s = shape.size_m;
-  switch (shape.kind) {
-    case Shape::Kind::kBox:
-      return s;
-    case Shape::Kind::kCapsule:
-      return {s.x(), s.x(), s.x() + s.y()};
-    case Shape::Kind::kCylinder:
-      return {s.x(), s.x(), s.y()};
-    case Shape::Kind::kSphere:
-      break;
-  }
-  return {s.x(), s.x(), s.x()};
 }
 
 /// A shape with its FCL twin; moving ones are placed anew at each check.
@@ -137,33 +117,35 @@ struct Best {
 }  // namespace
 
 struct ClearanceChecker::Impl {
-  const ArmModel& arm;
-  CellLayout layout;
+  const CellModel& model;
   std::array<std::vector<Solid>, kNumBodies> bodies;
   Solid finger;
+  std::vector<Solid> links;  // of a finger, beside its bar
   std::vector<Solid> bin_solids, other_solids;
   std::vector<Placed> bin_obstacles, other_obstacles;
 
-  Impl(const ArmModel& a, const CellLayout& l, const Bin& bin)
-      : arm(a), layout(l), finger(FingerShape()) {
-    for (Shape& shape : ArmShapes(arm, layout)) bodies[shape.link].emplace_back(std::move(shape));
+  Impl(const CellModel& m, const Bin& bin) : model(m), finger(FingerShape(m.gripper)) {
+    for (Shape& shape : MovingShapes(model)) bodies[shape.link].emplace_back(std::move(shape));
+    for (const GripperSpec::Link& link : model.gripper.links) links.emplace_back(link.shape);
     AddBin(bin);
+    const CellLayout& layout = model.layout;
     const double tray_half_m = 0.5 * layout.tray_size_m;
     other_solids.emplace_back(BoxShape("tray", layout.X_BT * Translation(0, 0, -0.5 * kSlab_m),
                                        Vector3(tray_half_m, tray_half_m, 0.5 * kSlab_m)));
-    other_solids.emplace_back(
-        BoxShape("cell plate", Translation(0, 0, -0.5 * kSlab_m), Vector3(2, 2, 0.5 * kSlab_m)));
+    other_solids.emplace_back(BoxShape("cell plate",
+                                       Translation(0, 0, layout.plate_z_m - 0.5 * kSlab_m),
+                                       Vector3(kPlateHalf_m, kPlateHalf_m, 0.5 * kSlab_m)));
+    for (Shape& shape : StandingShapes(model)) other_solids.emplace_back(std::move(shape));
     for (const Solid& s : bin_solids) bin_obstacles.emplace_back(s, RigidTransform::Identity());
     for (const Solid& s : other_solids) other_obstacles.emplace_back(s, RigidTransform::Identity());
   }
 
-  static Shape FingerShape() {
-    const GripperSpec gripper;
+  static Shape FingerShape(const GripperSpec& gripper) {
     return {Shape::Kind::kBox,
             "finger",
-            kFlange,
+            kFlangeBody,
             RigidTransform::Identity(),
-            0.5 * Vector3(gripper.pad_width_m, gripper.finger_thickness_m, kFingerLength_m),
+            0.5 * Vector3(gripper.pad_width_m, gripper.finger_thickness_m, gripper.finger_length_m),
             false};
   }
 
@@ -180,32 +162,43 @@ struct ClearanceChecker::Impl {
     add("bin wall -y", {0, -y - 0.5 * t, h}, {x + t, 0.5 * t, h});
   }
 
-  std::array<Placed, 2> PlaceFingers(const RigidTransform& X_BF, double opening_m) const {
-    const GripperSpec gripper;
+  std::array<Placed, 2> PlaceFingers(const RigidTransform& X_BE, double opening_m) const {
+    const GripperSpec& gripper = model.gripper;
     const double y = 0.5 * (opening_m + gripper.finger_thickness_m);
-    const double z = -PadRetreat(opening_m) + 0.5 * (gripper.pad_height_m - kFingerLength_m);
-    const RigidTransform X_BE = X_BF * layout.X_FE;
+    const double z =
+        -PadRetreat(gripper, opening_m) + 0.5 * (gripper.pad_height_m - gripper.finger_length_m);
     return {Placed(finger, X_BE * Translation(0, y, z)),
             Placed(finger, X_BE * Translation(0, -y, z))};
   }
+
+  void PlaceLinks(const RigidTransform& X_BE, double opening_m, std::vector<Placed>& out) const {
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      for (const int side : {+1, -1}) {
+        out.emplace_back(links[i], X_BE * LinkPose(model.gripper.links[i], opening_m, side));
+      }
+    }
+  }
 };
 
-ClearanceChecker::ClearanceChecker(const ArmModel& arm, const CellLayout& layout, const Bin& bin)
-    : impl_(std::make_unique<Impl>(arm, layout, bin)) {}
+ClearanceChecker::ClearanceChecker(const CellModel& model, const Bin& bin)
+    : impl_(std::make_unique<Impl>(model, bin)) {}
 ClearanceChecker::~ClearanceChecker() = default;
 
 ClearanceChecker::Result ClearanceChecker::Check(const JointVector& q, double opening_m,
                                                  double enough_m) const {
-  const auto X_BL = LinkPoses(impl_->arm, q);
-  const RigidTransform X_BF = X_BL[kNumJoints] * impl_->arm.X_6F;
+  const ArmModel& arm = impl_->model.arm;
+  const auto X_BL = LinkPoses(arm, q);
+  const RigidTransform X_BF = X_BL[kNumJoints] * arm.X_6F;
+  const RigidTransform X_BE = X_BF * impl_->model.layout.X_FE;
   std::array<std::vector<Placed>, kNumBodies> bodies;
   for (int body = 0; body < kNumBodies; ++body) {
     bodies[body].reserve(impl_->bodies[body].size() + 2);
     for (const Solid& solid : impl_->bodies[body]) {
-      bodies[body].emplace_back(solid, body == kFlange ? X_BF : X_BL[body]);
+      bodies[body].emplace_back(solid, body == kFlangeBody ? X_BF : X_BL[body]);
     }
   }
-  const std::array<Placed, 2> fingers = impl_->PlaceFingers(X_BF, opening_m);
+  impl_->PlaceLinks(X_BE, opening_m, bodies[kFlangeBody]);
+  const std::array<Placed, 2> fingers = impl_->PlaceFingers(X_BE, opening_m);
 
   Best fingers_best{enough_m}, others_best{enough_m};
   for (const Placed& finger : fingers) {
@@ -216,7 +209,7 @@ ClearanceChecker::Result ClearanceChecker::Check(const JointVector& q, double op
       for (const Placed& obstacle : impl_->bin_obstacles) others_best.Try(moving, obstacle);
     }
   }
-  bodies[kFlange].insert(bodies[kFlange].end(), fingers.begin(), fingers.end());
+  bodies[kFlangeBody].insert(bodies[kFlangeBody].end(), fingers.begin(), fingers.end());
   for (int body = 2; body < kNumBodies; ++body) {
     for (const Placed& moving : bodies[body]) {
       for (const Placed& obstacle : impl_->other_obstacles) others_best.Try(moving, obstacle);

@@ -144,10 +144,11 @@ std::optional<WaitOutcome> StartTrajectory(Cell& cell, const CheckedTrajectory& 
 Vector3 MotionDirection_K(const Cell& cell, const JointTrajectory& trajectory, double time_s,
                           const Vector3& previous) {
   const TrajectoryPoint point = Sample(trajectory, time_s);
-  const JacobianMatrix J = Jacobian(cell.arm_model, point.q, cell.layout.X_FE);
+  const JacobianMatrix J = Jacobian(cell.model.arm, point.q, cell.model.layout.X_FE);
   const Vector3 v_B = (J * point.qd).head<3>();
   if (v_B.norm() < kMinSpeed_m_s) return previous;
-  const Matrix3 R_BK = FlangePose(cell.arm_model, point.q).linear() * cell.layout.X_FK.linear();
+  const Matrix3 R_BK =
+      FlangePose(cell.model.arm, point.q).linear() * cell.model.layout.X_FK.linear();
   return R_BK.transpose() * v_B.normalized();
 }
 

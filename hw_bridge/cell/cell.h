@@ -3,8 +3,7 @@
 #include "hw_bridge/cell/devices.h"
 #include "hw_bridge/cell/safety.h"
 #include "models/bin.h"
-#include "models/gripper_spec.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 
 namespace tubetwin {
 
@@ -16,8 +15,7 @@ struct Cell {
   Gripper& gripper;
   ForceTorqueSensor& wrist;
   Scanner& scanner;
-  const ArmModel& arm_model;
-  CellLayout layout;
+  const CellModel& model;
   Bin bin;
   SafetyLimits safety;
   /// Set while a tube that was weighed is carried: from here on losing it ends a motion.

@@ -81,7 +81,7 @@ class Arm {
 };
 
 struct GripperCommand {
-  double opening_m = 0.085;  ///< Target between the pads.
+  double opening_m = 0.0;  ///< Target between the pads.
   double speed_m_s = 0.10;
   double force_N = 60.0;  ///< Per pad.
 };
@@ -91,8 +91,8 @@ struct GripperState {
   TimeNs time{0};
   bool activated = true;
   GripperObject object = GripperObject::kAtPosition;
-  double opening_m = 0.085;  ///< Quantised like the real register (about 0.37 mm).
-  double requested_m = 0.085;
+  double opening_m = 0.0;  ///< Quantised like the real register.
+  double requested_m = 0.0;
   int fault = 0;  ///< Register gFLT.
 };
 

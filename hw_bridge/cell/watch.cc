@@ -76,7 +76,7 @@ CheckedTrajectory WithinSpeed(const Cell& cell, const CheckedTrajectory& traject
   double fastest_m_s = 0.0;
   for (double t = 0.0; t < trajectory.duration_s(); t += kSpeedStep_s) {
     const TrajectoryPoint point = Sample(trajectory.trajectory(), t);
-    const JacobianMatrix J = Jacobian(cell.arm_model, point.q, cell.layout.X_FE);
+    const JacobianMatrix J = Jacobian(cell.model.arm, point.q, cell.model.layout.X_FE);
     fastest_m_s = std::max(fastest_m_s, (J * point.qd).head<3>().norm());
   }
   return trajectory.Stretched(std::max(1.0, fastest_m_s / limit_m_s));

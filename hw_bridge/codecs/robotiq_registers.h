@@ -73,9 +73,9 @@ std::variant<GripperStatus, DecodeError> DecodeGripperStatus(const GripperRegist
 
 /// Bytes and spans of one gripper: metres, m/s, newtons.
 struct GripperScale {
-  double stroke_m = 0.085;
-  double min_speed_m_s = 0.020, max_speed_m_s = 0.150;
-  double min_force_N = 20.0, max_force_N = 235.0;
+  double stroke_m = 0.0;
+  double min_speed_m_s = 0.0, max_speed_m_s = 0.0;
+  double min_force_N = 0.0, max_force_N = 0.0;
 
   /// Nearest count, clamped to what the fingers reach; NaN is the open end.
   std::uint8_t PositionOf(double opening_m) const;

@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "hw_bridge/cell/devices.h"
-#include "models/arm/arm.h"
 #include "models/base/config/config.h"
 #include "models/base/error.h"
 #include "models/base/json_fwd.h"
+#include "models/cell_model.h"
 
 namespace tubetwin {
 
 /// What a driver gets when it connects, beside its own configuration.
 struct DriverContext {
-  const ArmModel& arm_model;  ///< Must outlive the device.
-  const CellClock& clock;     ///< Must outlive the device; tells Now() to any thread.
-  double rate = 1.0;          ///< Cell time per wall time, of the whole cell.
+  const CellModel& model;  ///< Must outlive the device.
+  const CellClock& clock;  ///< Must outlive the device; tells Now() to any thread.
+  double rate = 1.0;       ///< Cell time per wall time, of the whole cell.
   /// False: the device is only read. No byte goes to an arm's motion port, fingers stay as they
   /// are.
   bool may_move = false;

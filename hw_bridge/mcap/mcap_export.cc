@@ -105,7 +105,7 @@ Json CloudJson(const ScanTaken& taken, int step) {
 class Exporter {
  public:
   Exporter(const CellRecordingHeader& header, const McapOptions& options, McapWriter& out)
-      : header_(header), options_(options), out_(out), arm_(Hc10()) {
+      : header_(header), options_(options), out_(out), arm_(header.model.arm) {
     joint_states_ = Add("/joint_states", JointStatesSchema());
     tf_ = Add("/tf", FrameTransformsSchema());
     arm_state_ = Add("/arm", ArmSchema());
@@ -117,7 +117,7 @@ class Exporter {
 
   /// Frames that stand still to each other.
   void AddFixedFrames(TimeNs time) {
-    const CellLayout& layout = header_.layout;
+    const CellLayout& layout = header_.model.layout;
     const Json transforms = {TransformJson(time, "base", "bin", header_.bin.X_BN),
                              TransformJson(time, "base", "tray", layout.X_BT),
                              TransformJson(time, "flange", "wrist", layout.X_FK),

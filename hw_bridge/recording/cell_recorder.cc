@@ -134,7 +134,7 @@ class RecordedScanner : public Scanner {
 };
 
 CellRecordingHeader Completed(CellRecordingHeader header, const Cell& cell) {
-  header.layout = cell.layout;
+  header.model = cell.model;
   header.bin = cell.bin;
   return header;
 }
@@ -149,8 +149,7 @@ struct CellRecorder::Impl {
         gripper(inner.gripper, tape),
         wrist(inner.wrist, tape),
         scanner(inner.scanner, tape),
-        cell{clock,           arm,          gripper,   wrist,       scanner,
-             inner.arm_model, inner.layout, inner.bin, inner.safety} {}
+        cell{clock, arm, gripper, wrist, scanner, inner.model, inner.bin, inner.safety} {}
 
   Tape tape;
   RecordedClock clock;

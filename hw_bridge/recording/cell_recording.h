@@ -12,7 +12,7 @@
 #include "hw_bridge/recording/cell_event.h"
 #include "hw_bridge/recording/event_codec.h"
 #include "models/bin.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 #include "models/part.h"
 
 namespace tubetwin {
@@ -36,7 +36,7 @@ struct CellRecordingHeader {
   /// fingerprint.
   std::string config_toml;
   std::string fingerprint;
-  CellLayout layout;
+  CellModel model;
   Bin bin;
   Part part;
   /// JSON of the moment in which a stored round was taken up; empty: the round began at its

@@ -1,6 +1,7 @@
 #include "hw_bridge/recording/recording_header.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "models/base/error.h"
 #include "models/base/json.h"
@@ -22,16 +23,18 @@ RigidTransform PoseFromJson(const JsonView& view) {
   return X_AB;
 }
 
+/// What configuration and calibration may change of a model's layout, and what recordings had
+/// before they held the model.
 Json LayoutJson(const CellLayout& layout) {
-  return Json{{"X_FK", PoseJson(layout.X_FK)},          {"X_FE", PoseJson(layout.X_FE)},
-              {"X_FS", PoseJson(layout.X_FS)},          {"X_BT", PoseJson(layout.X_BT)},
-              {"tray_size_m", layout.tray_size_m},      {"tray_zone_m", layout.tray_zone_m},
-              {"slot_pitch_m", layout.slot_pitch_m},    {"p_BTilt", ToJson(layout.p_BTilt)},
-              {"carry_height_m", layout.carry_height_m}};
+  return Json{{"X_FK", PoseJson(layout.X_FK)},     {"X_FE", PoseJson(layout.X_FE)},
+              {"X_FS", PoseJson(layout.X_FS)},     {"X_BS", PoseJson(layout.X_BS)},
+              {"X_BT", PoseJson(layout.X_BT)},     {"tray_size_m", layout.tray_size_m},
+              {"tray_zone_m", layout.tray_zone_m}, {"slot_pitch_m", layout.slot_pitch_m},
+              {"p_BTilt", ToJson(layout.p_BTilt)}, {"carry_height_m", layout.carry_height_m}};
 }
 
-CellLayout LayoutFromJson(const JsonView& view) {
-  CellLayout layout;
+void ReadLayout(const JsonView& view, CellLayout& layout) {
+  if (const auto X_BS = view.Optional("X_BS")) layout.X_BS = PoseFromJson(*X_BS);
   layout.X_FK = PoseFromJson(view.Field("X_FK"));
   layout.X_FE = PoseFromJson(view.Field("X_FE"));
   layout.X_FS = PoseFromJson(view.Field("X_FS"));
@@ -41,7 +44,31 @@ CellLayout LayoutFromJson(const JsonView& view) {
   layout.slot_pitch_m = view.Field("slot_pitch_m").AsNumber();
   layout.p_BTilt = view.Field("p_BTilt").AsVector3();
   layout.carry_height_m = view.Field("carry_height_m").AsNumber();
-  return layout;
+}
+
+Json FileJson(const ModelFile& file) {
+  return Json{{"path", file.path}, {"text", file.text}, {"shipped", file.shipped}};
+}
+
+ModelFile FileFromJson(const JsonView& view) {
+  return {view.Field("path").AsString(), view.Field("text").AsString(),
+          view.Field("shipped").AsBool()};
+}
+
+Json ModelJson(const CellFiles& files) {
+  return Json{{"cell", FileJson(files.cell)},
+              {"arm", FileJson(files.arm)},
+              {"gripper", FileJson(files.gripper)},
+              {"wrist", FileJson(files.wrist)},
+              {"scanner", FileJson(files.scanner)}};
+}
+
+/// Recordings of before 0.3 hold no model: there was one cell.
+CellModel ModelFromJson(const std::optional<JsonView>& view) {
+  if (!view) return LoadCellModel("leao2020");
+  return ReadCellModel({FileFromJson(view->Field("cell")), FileFromJson(view->Field("arm")),
+                        FileFromJson(view->Field("gripper")), FileFromJson(view->Field("wrist")),
+                        FileFromJson(view->Field("scanner"))});
 }
 
 /// A text that is JSON. The nlohmann exception would not name the source.
@@ -61,8 +88,8 @@ std::string HeaderToText(const CellRecordingHeader& header) {
   json["versions"] = header.versions;
   json["seed"] = header.seed;
   json["fingerprint"] = header.fingerprint;
-  json["arm"] = "hc10";
-  json["layout"] = LayoutJson(header.layout);
+  json["cell_model"] = ModelJson(header.model.files);
+  json["layout"] = LayoutJson(header.model.layout);
   json["bin"] = Json{{"size_m", header.bin.size_m}, {"X_BN", PoseJson(header.bin.X_BN)}};
   json["part"] = PartToJson(header.part);
   if (!header.held.empty()) json["held"] = header.held;
@@ -82,10 +109,8 @@ CellRecordingHeader HeaderFromText(const std::string& text, const std::string& s
   }
   header.seed = view.Field("seed").AsInteger();
   header.fingerprint = view.Field("fingerprint").AsString();
-  if (const JsonView arm = view.Field("arm"); arm.AsString() != "hc10") {
-    arm.Fail("'" + arm.AsString() + "', allowed: hc10");
-  }
-  header.layout = LayoutFromJson(view.Field("layout"));
+  header.model = ModelFromJson(view.Optional("cell_model"));
+  ReadLayout(view.Field("layout"), header.model.layout);
   const JsonView bin = view.Field("bin");
   const JsonView size = bin.Field("size_m");
   if (size.Size() != 3) size.Fail("three numbers are needed");

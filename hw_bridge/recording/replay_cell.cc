@@ -243,8 +243,7 @@ struct ReplayCell::Impl {
              gripper,
              wrist,
              scanner,
-             Hc10(),
-             script.recording().header().layout,
+             script.recording().header().model,
              script.recording().header().bin,
              {}} {}
 

@@ -6,6 +6,8 @@
 
 #include "models/base/frames.h"
 #include "models/base/joint.h"
+#include "models/model_file.h"
+#include "models/shape.h"
 
 namespace tubetwin {
 
@@ -35,7 +37,11 @@ struct ArmModel {
   RigidTransform X_6F = RigidTransform::Identity();
 };
 
-const ArmModel& Hc10();
+/// Of an arm file, shipped or a user's own. Throws Error(kConfig) with file:line:column.
+ArmModel ReadArm(const ModelFile& file);
+
+/// What hangs on base and links.
+std::vector<Shape> ArmShapes(const ArmModel& arm);
 
 /// X_BF. Thread safe like everything here.
 RigidTransform FlangePose(const ArmModel& arm, const JointVector& q);

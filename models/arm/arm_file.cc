@@ -6,12 +6,10 @@
 #include "models/arm/arm.h"
 #include "models/base/config/config.h"
 #include "models/base/error.h"
-#include "models/embedded.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr const char* kFile = "arm/hc10.toml";
 constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
 constexpr std::array<double, 3> kUnset3 = {kUnset, kUnset, kUnset};
 
@@ -101,9 +99,10 @@ ArmModel::Link ReadLink(const char* name, const LinkEntry& entry) {
   return link;
 }
 
-ArmModel ReadArm(std::string_view text) {
-  ConfigSource source;
-  source.AddText(std::string(text), std::string("models/") + kFile);
+}  // namespace
+
+ArmModel ReadArm(const ModelFile& file) {
+  const ConfigSource source = file.Source();
   ArmEntry entry;
   source.ReadInto(entry);
   // The file has no defaults to fall back on: writing it out checks that every number is set.
@@ -115,20 +114,6 @@ ArmModel ReadArm(std::string_view text) {
   }
   for (int i = 0; i <= kNumJoints; ++i) arm.links[i] = ReadLink(kLinkNames[i], entry.links[i]);
   arm.X_6F = MakeTransform(RotX(Radians(entry.flange_roll_deg)), ToVector(entry.flange_origin_m));
-  return arm;
-}
-
-ArmModel ReadEmbeddedArm() {
-  for (const EmbeddedText& file : EmbeddedTexts()) {
-    if (file.path == kFile) return ReadArm(file.text);
-  }
-  throw Error(ErrorKind::kInternal, std::string(kFile) + " is not in the program");
-}
-
-}  // namespace
-
-const ArmModel& Hc10() {
-  static const ArmModel arm = ReadEmbeddedArm();
   return arm;
 }
 

@@ -2,25 +2,33 @@
 
 #include <algorithm>
 
-#include "models/layout.h"
+#include "models/base/error.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 
 void ScanConfig::Visit(ConfigVisitor& v) {
   v.Field("views", "how many of the scan poses are used", views, {1, 8});
-  v.Choice("resolution", "columns x rows of a scan", resolution, {"1032x772", "2064x1544"});
+  v.Field("resolution", "columns x rows of a scan, one that the scanner has; empty: its first",
+          resolution);
   v.Field("overhead_m",
           "height over the floor of one view on the whole bin instead of the scan poses; 0: these",
           overhead_m, {0.0, 1.5});
   v.Field("rescan_all", "look everywhere again before every pick", rescan_all);
 }
 
-std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const Bin& bin) {
+std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const CellModel& model,
+                                      const Bin& bin) {
   if (config.overhead_m > 0.0) {
+    if (model.layout.scanner_mount == CellLayout::ScannerMount::kStand) {
+      throw Error(ErrorKind::kConfig, "scan.overhead_m: is " + Number(config.overhead_m) +
+                                          "; the scanner of " + model.name +
+                                          " is on a stand and sees from there: only 0 is allowed");
+    }
     const RigidTransform X_NS = MakeTransform(RotX(kPi), Vector3(0, 0, config.overhead_m));
     return {bin.X_BN * X_NS};
   }
-  std::vector<RigidTransform> poses_BS = DefaultScanPoses(bin);
+  std::vector<RigidTransform> poses_BS = ScanPosesOf(model, bin);
   poses_BS.resize(std::min(poses_BS.size(), static_cast<std::size_t>(config.views)));
   return poses_BS;
 }

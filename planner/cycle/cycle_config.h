@@ -5,15 +5,15 @@
 
 #include "models/base/config/config.h"
 #include "models/base/frames.h"
-#include "models/bin.h"
+#include "models/cell_model.h"
 #include "planner/motion/path_config.h"
 
 namespace tubetwin {
 
 /// Config table [scan].
 struct ScanConfig {
-  int views = 8;                        ///< Of the default poses, from the first.
-  std::string resolution = "1032x772";  ///< Or "2064x1544".
+  int views = 8;           ///< Of the cell model's views, from the first.
+  std::string resolution;  ///< "1032x772": one that the scanner has; empty: its first.
   /// One view straight down on the bin's centre from so high over its floor, image along the long
   /// side, in place of the scan poses; 0: the scan poses.
   double overhead_m = 0.0;
@@ -32,7 +32,9 @@ struct CycleConfig : PathConfig {
   void Visit(ConfigVisitor& v);
 };
 
-/// Where a round looks from, X_BS.
-std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const Bin& bin);
+/// Where a round looks from, X_BS: at least one. Throws Error(kConfig) when an overhead view is
+/// asked of a scanner on a stand.
+std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const CellModel& model,
+                                      const Bin& bin);
 
 }  // namespace tubetwin

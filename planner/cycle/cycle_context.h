@@ -22,7 +22,7 @@ struct CycleContext {
         setup(the_setup),
         observer(the_observer),
         executor(the_cell),
-        gripper(MakeGripperGeometry(the_cell.arm_model, the_cell.layout)),
+        gripper(MakeGripperGeometry(the_cell.model)),
         strategy(setup.strategy ? *setup.strategy
                                 : ResolutionStrategyOf(setup.resolution.strategy)),
         motions(setup.motions ? *setup.motions : ExtractionMotionsOf(setup.planner)) {}

@@ -45,8 +45,8 @@ StepOutcome Push(CycleContext& c, const Nudge& nudge) {
   NudgeReport report;
   report.tube = nudge.tube;
   report.direction_N = nudge.direction_N;
-  const PathCheck check =
-      c.executor.Check(MakeNudgePath(nudge, c.cell.bin, c.setup.cycle, c.setup.planner));
+  const PathCheck check = c.executor.Check(
+      MakeNudgePath(nudge, c.cell.model.gripper, c.cell.bin, c.setup.cycle, c.setup.planner));
   StepOutcome step;
   if (const MotionRejection* refusal = RefusalOf(check)) {
     step = StepOutcome::Refused(refusal->reason);

@@ -58,7 +58,7 @@ std::variant<Placement, StepOutcome> PlanPlace(const CycleContext& c, const Poly
              planner.Reach(Over(X_BE, kAbovePlace_m), q6_rad);
     };
     const std::optional<PlacementPose> pose =
-        PlanPlacement(c.cell.layout, Sagged(line_E, c.setup.part), c.setup.part.radius_m,
+        PlanPlacement(c.cell.model.layout, Sagged(line_E, c.setup.part), c.setup.part.radius_m,
                       c.placed_T, ToolYaw(c.executor.X_BE().linear()), reachable);
     if (!pose) break;
     PathCheck check = c.executor.Check(MakePlacePath(c, *pose));

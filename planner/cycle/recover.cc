@@ -40,7 +40,7 @@ PickPath LoweringPath(const CycleContext& c, bool over_middle) {
   }
   if (over_middle) {
     X_BE.translation().head<2>() = bin.X_BN.translation().head<2>();
-    X_BE = AtHeight(X_BE, floor_B + c.cell.layout.carry_height_m);
+    X_BE = AtHeight(X_BE, floor_B + c.cell.model.layout.carry_height_m);
     path.Transfer("to over the bin's middle", X_BE);
   }
   const double rim_B = floor_B + bin.wall_m() + kOverRim_m, low_B = floor_B + kOverFloor_m;
@@ -57,7 +57,7 @@ PickPath LoweringPath(const CycleContext& c, bool over_middle) {
 
 StepOutcome RetreatAndPutBack(CycleContext& c) {
   c.executor.Resync();
-  const double carry_B = c.cell.bin.X_BN.translation().z() + c.cell.layout.carry_height_m;
+  const double carry_B = c.cell.bin.X_BN.translation().z() + c.cell.model.layout.carry_height_m;
   const RigidTransform X_BE = c.executor.X_BE();
   MotionOptions slow = NearGrasp(kRetreatSpeed_m_s, kRetreatAcceleration_m_s2);
   if (X_BE.translation().z() < carry_B) {

@@ -37,10 +37,10 @@ std::string CaptionOf(const CheckedPath& path, int stage) {
 HeldStep Resolve(CycleContext& c, const Vector3& load_torque_K) {
   const ResolutionStrategy& strategy = c.strategy;
   if (strategy.make == nullptr) return {};
-  const PathCheck check =
-      CheckTurned(c, strategy,
-                  {c.executor.X_BE(), load_torque_K, c.cell.layout, c.cell.bin, c.setup.resolution,
-                   c.setup.cycle, c.setup.planner.lift_speed_m_s, c.held.period_s, 0.0});
+  const PathCheck check = CheckTurned(
+      c, strategy,
+      {c.executor.X_BE(), load_torque_K, c.cell.model.layout, c.cell.bin, c.setup.resolution,
+       c.setup.cycle, c.setup.planner.lift_speed_m_s, c.held.period_s, 0.0});
   if (const MotionRejection* refusal = RefusalOf(check)) {
     return {StepOutcome::Refused(strategy.name + ": " + refusal->reason)};
   }

@@ -216,7 +216,8 @@ Round::GraspStep Round::GraspTube(const Decision& decision) {
   if (StepOutcome step = Tare(); !step.ok()) return {step, ""};
   const StepOutcome descent = c_.Run(path, kDescendStage);
   if (!descent.ok()) return {descent, ""};
-  const RigidTransform X_BE = ToolPoseAtGrasp(plan.grasp, c_.setup.part.radius_m, c_.cell.bin);
+  const RigidTransform X_BE =
+      ToolPoseAtGrasp(plan.grasp, c_.setup.part.radius_m, c_.cell.model.gripper, c_.cell.bin);
   const double short_m = (c_.executor.X_BE().translation() - X_BE.translation()).norm();
   if (descent.contact() && short_m > kContactSlack_m) {
     return {
@@ -232,7 +233,7 @@ Round::GraspStep Round::GraspTube(const Decision& decision) {
 // A small lift, weigh, the rest of the motion, weigh for good.
 Weighing Round::LiftAndWeigh(const Decision& decision) {
   const CheckedPath& path = *decision.path;
-  c_.cell.arm.SetPayload(c_.setup.part.mass_kg, c_.cell.layout.X_FE.translation());
+  c_.cell.arm.SetPayload(c_.setup.part.mass_kg, c_.cell.model.layout.X_FE.translation());
   c_.observer.OnStep("lifting 3 cm");
   if (StepOutcome step = c_.Run(path, kFirstLiftStage); !step.ok()) return {step, {}};
   Weighing first = Weigh(c_, kFirstSettle_s);

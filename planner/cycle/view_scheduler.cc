@@ -10,8 +10,8 @@ namespace {
 
 /// Two tubes nearer than this may hand a motion on to one another.
 constexpr double kTouchMargin_m = 0.010;
-/// Half field of view of the scanner as tangents, with room for what a tube may have moved.
-constexpr double kFieldX = 0.5 * 2064.0 / 2534.0 + 0.12, kFieldY = 0.5 * 1544.0 / 2534.0 + 0.12;
+/// Room for what a tube may have moved, added to the tangents of half the scanner's field of view.
+constexpr double kFieldRoom = 0.12;
 
 /// Whether each tube of a scene may have moved when one was taken: it and what touches it, and what
 /// touches that.
@@ -40,7 +40,7 @@ std::vector<bool> MovedWith(const std::vector<PerceivedTube>& tubes, int tube_id
 }  // namespace
 
 ViewScheduler::ViewScheduler(CycleContext& context) : context_(context) {
-  poses_BS_ = ScanPoses(context.setup.scan, context.cell.bin);
+  poses_BS_ = ScanPoses(context.setup.scan, context.cell.model, context.cell.bin);
   views_.resize(poses_BS_.size());
   ages_.assign(poses_BS_.size(), Age::kNever);
   taken_.assign(poses_BS_.size(), false);
@@ -63,10 +63,13 @@ std::vector<OrganizedCloud> ViewScheduler::clouds() const {
 }
 
 bool ViewScheduler::Sees(std::size_t view, const Polyline& line_N) const {
+  const ScannerSpec& scanner = context_.cell.model.scanner;
+  const double field_x = 0.5 * scanner.full_width / scanner.focal_px + kFieldRoom;
+  const double field_y = 0.5 * scanner.full_height / scanner.focal_px + kFieldRoom;
   const RigidTransform X_SN = poses_BS_[view].inverse() * context_.cell.bin.X_BN;
   return std::any_of(line_N.begin(), line_N.end(), [&](const Vector3& p_N) {
     const Vector3 p_S = X_SN * p_N;
-    return std::abs(p_S.x()) < kFieldX * p_S.z() && std::abs(p_S.y()) < kFieldY * p_S.z();
+    return std::abs(p_S.x()) < field_x * p_S.z() && std::abs(p_S.y()) < field_y * p_S.z();
   });
 }
 
@@ -82,14 +85,14 @@ void ViewScheduler::MarkAround(int tube_id) {
 
 StepOutcome ViewScheduler::GoTo(std::size_t view, bool first) {
   const CycleConfig& config = context_.setup.cycle;
-  const RigidTransform X_SE = context_.cell.layout.X_FS.inverse() * context_.cell.layout.X_FE;
+  const MotionPlanner& planner = context_.executor.planner();
   // From one view to the next the joints go straight: views lie at one height over all else.
   const MotionOptions options =
       first ? NearGrasp(config.transfer_speed_m_s, config.transfer_acceleration_m_s2)
             : MotionOptions();
   PathBuilder path = context_.Path();
   path.Add("to view " + std::to_string(view + 1), options,
-           Transfer{poses_BS_[view] * X_SE, /*direct=*/!first});
+           Transfer{planner.PoseOfEForScan(poses_BS_[view]), /*direct=*/!first});
   return context_.CheckAndRun(path.path());
 }
 

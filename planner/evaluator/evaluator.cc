@@ -213,7 +213,7 @@ class Evaluation {
   bool TouchesAny(const CandidateMotion& motion, double at_m) const {
     const Polyline& line = scene_.tubes[IndexOf(scene_, motion.tube)].centerline_N;
     return FirstTouched(scene_, motion) ||
-           FirstTouchedByFingers(scene_, motion, PointAt(line, at_m));
+           FirstTouchedByFingers(scene_, motion, PointAt(line, at_m), options_.gripper.spec);
   }
 
   // Scores the motions that touch nothing; returns the others.

@@ -181,7 +181,9 @@ void RolloutScene::AddFingers(mjsBody& hand, const GripperGeometry& gripper, dou
   const GripperBoxes boxes = MakeGripperBoxes(gripper, 2.0 * radius_m, radius_m, height_m);
   const RigidTransform X_HandE =
       Translation(0, 0, height_m) * Eigen::AngleAxisd(kPi, Vector3::UnitX());
-  for (const OrientedBox& box_E : {boxes.finger[0], boxes.finger[1], boxes.chassis, boxes.base}) {
+  std::vector<OrientedBox> solid = {boxes.finger[0], boxes.finger[1]};
+  for (const auto& [name, box_E] : boxes.carrying) solid.push_back(box_E);
+  for (const OrientedBox& box_E : solid) {
     const OrientedBox box = Moved(X_HandE, box_E);
     mjsGeom* geom = mjs_addGeom(&hand, nullptr);
     geom->type = mjGEOM_BOX;

@@ -15,8 +15,7 @@ namespace {
 constexpr double kEnough_m = 0.020;    // More room than this is worth nothing.
 constexpr double kOwnReach_m = 0.045;  // The tube itself is an obstacle from this arc length on.
 constexpr double kTangentWindow_m = 0.03;
-constexpr double kGripperReach_m = 0.20;  // Of the gripper's body from E.
-constexpr double kTurnStep_m = 0.01;      // Between poses of a motion that turns.
+constexpr double kTurnStep_m = 0.01;  // Between poses of a motion that turns.
 constexpr double kMaxTilt_deg = 35.0;
 constexpr double kFloorClearance_m = 0.002;  // Between a tilted finger and the floor.
 constexpr double kMinHold_m = 0.005;         // Of the pads below the tube's axis.
@@ -87,10 +86,11 @@ double TiltOf(const RigidTransform& X_NG) {
 Fit CheckPoints(const GraspObstacles& around, const RigidTransform& X_NG,
                 const GripperBoxes& boxes) {
   const std::array<OrientedBox, 4> solid = {
-      Moved(X_NG, boxes.finger[0]), Moved(X_NG, boxes.finger[1]), Moved(X_NG, boxes.chassis),
+      Moved(X_NG, boxes.finger[0]), Moved(X_NG, boxes.finger[1]), Moved(X_NG, boxes.chassis()),
       Moved(X_NG, boxes.above_tube)};
   // A tilted body lies aside of E.
-  const double reach = boxes.chassis.half_m.y() + 0.02 + kGripperReach_m * std::sin(TiltOf(X_NG));
+  const double reach =
+      boxes.chassis().half_m.y() + 0.02 + around.input.gripper.reach_m * std::sin(TiltOf(X_NG));
   int count = 0;
   for (const Vector3& p : around.input.points_N) {
     const Vector3 apart = p - X_NG.translation();
@@ -113,13 +113,11 @@ Fit CheckFit(const GraspObstacles& around, const std::vector<GraspObstacle>& own
       MakeGripperBoxes(around.input.gripper, opening_m, around.tube.radius_m, height_over_axis_m);
   const double min_m = around.input.config.finger_clearance_m;
   Fit fit{kEnough_m, ""};
-  for (const auto& [name, box] :
-       {std::pair{"fingers", boxes.fingers}, std::pair{"chassis", boxes.chassis},
-        std::pair{"gripper base", boxes.base}}) {
+  for (const auto& [name, box] : Parts(boxes)) {
     const OrientedBox box_N = Moved(X_NG, box);
     const double to_wall = WallClearance(box_N, around.input.bin, kEnough_m);
     if (to_wall < min_m) {
-      return {to_wall, std::string(name) + " " + Millimetres(to_wall) + " from the bin's wall"};
+      return {to_wall, name + " " + Millimetres(to_wall) + " from the bin's wall"};
     }
     fit.clearance_m = std::min(fit.clearance_m, to_wall);
     for (const auto* obstacles : {&around.others, &own}) {
@@ -127,7 +125,7 @@ Fit CheckFit(const GraspObstacles& around, const std::vector<GraspObstacle>& own
         const double gap =
             LineBoxDistance(other.line, box_N, kEnough_m + other.radius_m) - other.radius_m;
         if (gap < min_m) {
-          return {gap, std::string(name) + " " + Millimetres(gap) + " from " + other.name};
+          return {gap, name + " " + Millimetres(gap) + " from " + other.name};
         }
         fit.clearance_m = std::min(fit.clearance_m, gap);
       }
@@ -190,7 +188,8 @@ double WallClearanceAlong(const GraspInput& input, const CandidateMotion& motion
                           const Grasp& grasp, double radius_m) {
   std::vector<RigidTransform> poses;
   if (motion.turns()) {
-    const double reach_m = (grasp.X_NG.translation() - motion.pivot_N).norm() + kGripperReach_m;
+    const double reach_m =
+        (grasp.X_NG.translation() - motion.pivot_N).norm() + input.gripper.reach_m;
     poses = PosesAlong(motion, kTurnStep_m, reach_m);
   } else {
     for (std::size_t k = 1; k < motion.waypoints_N.size(); ++k) {
@@ -204,7 +203,7 @@ double WallClearanceAlong(const GraspInput& input, const CandidateMotion& motion
   const GripperBoxes boxes = MakeGripperBoxes(input.gripper, grasp.opening_m, radius_m, 0.0);
   double to_wall = kEnough_m;
   for (const RigidTransform& pose : poses) {
-    for (const OrientedBox& box : {boxes.fingers, boxes.chassis, boxes.base}) {
+    for (const auto& [name, box] : Parts(boxes)) {
       to_wall =
           std::min(to_wall, WallClearance(Moved(pose * grasp.X_NG, box), input.bin, kEnough_m));
     }

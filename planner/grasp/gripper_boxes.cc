@@ -2,26 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <utility>
 
 #include "models/base/error.h"
-#include "models/clearance.h"
 
 namespace tubetwin {
 namespace {
 
-// Box around a shape of the tool, in E.
-OrientedBox ToolBox(const ArmModel& arm, const CellLayout& layout, const std::string& name) {
-  using Shape = ClearanceChecker::Shape;
-  for (const Shape& shape : ClearanceChecker::ArmShapes(arm, layout)) {
-    if (shape.name != name) continue;
-    const Vector3 half = shape.kind == Shape::Kind::kBox
-                             ? shape.size_m
-                             : Vector3(shape.size_m.x(), shape.size_m.x(), shape.size_m.y());
-    return {layout.X_FE.inverse() * shape.X_LinkShape, half};
-  }
-  throw LogicError("the tool has no shape '" + name + "'");
-}
+constexpr double kLeastReach_m = 0.20;  // of the gripper's body from E
+
+using NamedBox = GripperGeometry::NamedBox;
 
 // Box from its bounds in E.
 OrientedBox Between(const Vector3& low, const Vector3& high) {
@@ -30,9 +20,26 @@ OrientedBox Between(const Vector3& low, const Vector3& high) {
 
 }  // namespace
 
-GripperGeometry MakeGripperGeometry(const ArmModel& arm, const CellLayout& layout) {
-  return {GripperSpec(), ToolBox(arm, layout, "gripper chassis"),
-          ToolBox(arm, layout, "gripper base")};
+GripperGeometry MakeGripperGeometry(const CellModel& model) {
+  GripperGeometry out;
+  out.spec = model.gripper;
+  out.reach_m = kLeastReach_m;
+  const RigidTransform X_EF = model.layout.X_FE.inverse();
+  const auto end = [](const NamedBox& box) {  // the pads are beyond this
+    return box.box.X_AB.translation().z() + box.box.half_m.z();
+  };
+  for (const Shape& shape : model.gripper.body) {
+    NamedBox box{shape.name, {X_EF * (model.layout.X_FK * shape.X_LinkShape), HalfExtent(shape)}};
+    out.reach_m = std::max(out.reach_m, box.box.X_AB.translation().norm() + box.box.half_m.z());
+    if (out.chassis.name.empty()) {
+      out.chassis = std::move(box);
+      continue;
+    }
+    if (end(box) > end(out.chassis)) std::swap(box, out.chassis);
+    out.body.push_back(std::move(box));
+  }
+  TT_CHECK(!out.chassis.name.empty());
+  return out;
 }
 
 GripperBoxes MakeGripperBoxes(const GripperGeometry& gripper, double opening_m,
@@ -42,10 +49,16 @@ GripperBoxes MakeGripperBoxes(const GripperGeometry& gripper, double opening_m,
   const double outer = hy + spec.finger_thickness_m;
   const double tip = 0.5 * spec.pad_height_m;
   GripperBoxes boxes;
-  boxes.chassis = gripper.chassis;
-  boxes.base = gripper.base;
+  boxes.carrying.push_back(gripper.chassis);
+  boxes.carrying.insert(boxes.carrying.end(), gripper.body.begin(), gripper.body.end());
+  for (const GripperSpec::Link& link : spec.links) {
+    for (const int side : {+1, -1}) {
+      boxes.carrying.push_back(
+          {link.shape.name, {LinkPose(link, opening_m, side), HalfExtent(link.shape)}});
+    }
+  }
   // The fingers end at the chassis.
-  const double top = gripper.chassis.X_AB.translation().z() + gripper.chassis.half_m.z();
+  const double top = boxes.chassis().X_AB.translation().z() + boxes.chassis().half_m.z();
   boxes.fingers = Between({-hx, -outer, top}, {hx, outer, tip});
   boxes.finger[0] = Between({-hx, -outer, top}, {hx, -hy, tip});
   boxes.finger[1] = Between({-hx, hy, top}, {hx, outer, tip});
@@ -54,6 +67,12 @@ GripperBoxes MakeGripperBoxes(const GripperGeometry& gripper, double opening_m,
   boxes.above_tube =
       Between({-hx, -hy, top}, {hx, hy, height_over_axis_m - tube_radius_m - kOverTube_m});
   return boxes;
+}
+
+std::vector<NamedBox> Parts(const GripperBoxes& boxes) {
+  std::vector<NamedBox> parts = {{"fingers", boxes.fingers}};
+  parts.insert(parts.end(), boxes.carrying.begin(), boxes.carrying.end());
+  return parts;
 }
 
 OrientedBox Moved(const RigidTransform& X_NE, const OrientedBox& box) {

@@ -1,21 +1,26 @@
 #pragma once
 
-#include "models/arm/arm.h"
-#include "models/base/frames.h"
-#include "models/bin.h"
-#include "models/gripper_spec.h"
-#include "models/layout.h"
+#include <string>
+#include <vector>
+
+#include "models/cell_model.h"
 #include "planner/scene_query/box_distance.h"
 
 namespace tubetwin {
 
 /// The gripper as the planner knows it: figures of fingers and pads, and the body that carries them
-/// as boxes in frame E, of the arm's list of shapes and the cell's calibration.
+/// as boxes in frame E, of the gripper's list of shapes and the cell's calibration.
 struct GripperGeometry {
+  struct NamedBox {
+    std::string name;
+    OrientedBox box;
+  };
   GripperSpec spec;
-  OrientedBox chassis, base;
+  NamedBox chassis;            ///< The one next to the pads: the fingers end there.
+  std::vector<NamedBox> body;  ///< The rest of what carries them.
+  double reach_m = 0.0;        ///< Of all of it from E.
 };
-GripperGeometry MakeGripperGeometry(const ArmModel& arm, const CellLayout& layout);
+GripperGeometry MakeGripperGeometry(const CellModel& model);
 
 /// What the gripper fills around E, as boxes in frame E (x along the grasped tube, y closing, z out
 /// of the tool), from the lower edge of the pads when closed on the tube up to its own body. All of
@@ -24,14 +29,19 @@ struct GripperBoxes {
   OrientedBox fingers;     ///< Both fingers and the gap between them: no other tube may be there.
   OrientedBox finger[2];   ///< Towards -y and +y.
   OrientedBox above_tube;  ///< The gap over the tube that will be held.
-  OrientedBox chassis;     ///< The body that carries the fingers.
-  OrientedBox base;        ///< Its round foot.
+  /// The chassis, then the rest of the body, then the bars of the fingers' linkage at that opening.
+  std::vector<GripperGeometry::NamedBox> carrying;
+
+  const OrientedBox& chassis() const { return carrying.front().box; }
 };
 
 /// Boxes at `opening_m` between the pads, for a tube of `tube_radius_m` whose axis lies
 /// `height_over_axis_m` below E.
 GripperBoxes MakeGripperBoxes(const GripperGeometry& gripper, double opening_m,
                               double tube_radius_m, double height_over_axis_m);
+
+/// Both fingers with the gap between them first, then what carries them.
+std::vector<GripperGeometry::NamedBox> Parts(const GripperBoxes& boxes);
 
 /// Moved by X_NE into N.
 OrientedBox Moved(const RigidTransform& X_NE, const OrientedBox& box);

@@ -133,8 +133,13 @@ RigidTransform AtHeight(RigidTransform X_BE, double z_m) {
 
 }  // namespace
 
-MotionPlanner::MotionPlanner(const ArmModel& arm, const CellLayout& layout, const Bin& bin)
-    : arm_(arm), layout_(layout), bin_(bin), clearance_(arm, layout, bin) {}
+MotionPlanner::MotionPlanner(const CellModel& model, const Bin& bin)
+    : model_(model), arm_(model.arm), layout_(model.layout), bin_(bin), clearance_(model, bin) {}
+
+FollowContext MotionPlanner::Following(const MotionOptions& options) const {
+  return {arm_, layout_.X_FE, clearance_, options,
+          options.opening_m.value_or(model_.gripper.stroke_m)};
+}
 
 RigidTransform MotionPlanner::PoseOfE(const JointVector& q) const {
   return FlangePose(arm_, q) * layout_.X_FE;
@@ -148,7 +153,11 @@ RigidTransform MotionPlanner::OverGoal(const RigidTransform& X_BE,
 }
 
 RigidTransform MotionPlanner::PoseOfEForScan(const RigidTransform& X_BS) const {
-  return X_BS * layout_.X_FS.inverse() * layout_.X_FE;
+  if (layout_.scanner_mount == CellLayout::ScannerMount::kStand) {
+    return MakeTransform(RotX(kPi), layout_.p_BClear);
+  }
+  const RigidTransform X_SE = layout_.X_FS.inverse() * layout_.X_FE;
+  return X_BS * X_SE;
 }
 
 std::optional<JointVector> MotionPlanner::Reach(const RigidTransform& X_BE,
@@ -165,7 +174,7 @@ std::optional<JointVector> MotionPlanner::Reach(const RigidTransform& X_BE,
 
 MotionResult MotionPlanner::PlanLine(const JointVector& q_start, const RigidTransform& X_BE_goal,
                                      const MotionOptions& options) const {
-  const FollowContext context{arm_, layout_.X_FE, clearance_, options};
+  const FollowContext context = Following(options);
   Chain chain(arm_, q_start, 1);
   chain.Add(LineSegmentTo(context, q_start, X_BE_goal));
   return chain.Take();
@@ -175,7 +184,7 @@ MotionResult MotionPlanner::PlanPolyline(const JointVector& q_start,
                                          const std::vector<RigidTransform>& X_BE,
                                          const MotionOptions& options) const {
   TT_CHECK(!X_BE.empty());
-  const FollowContext context{arm_, layout_.X_FE, clearance_, options};
+  const FollowContext context = Following(options);
   Chain chain(arm_, q_start, static_cast<int>(X_BE.size()));
   for (const RigidTransform& goal : X_BE) {
     if (!chain.Add(LineSegmentTo(context, chain.q(), goal))) break;
@@ -185,7 +194,7 @@ MotionResult MotionPlanner::PlanPolyline(const JointVector& q_start,
 
 MotionResult MotionPlanner::PlanTilt(const JointVector& q_start, const Vector3& rotation_B,
                                      const MotionOptions& options) const {
-  const FollowContext context{arm_, layout_.X_FE, clearance_, options};
+  const FollowContext context = Following(options);
   Chain chain(arm_, q_start, 1);
   chain.Add(LineSegment(context, q_start, Vector3::Zero(), rotation_B));
   return chain.Take();
@@ -193,7 +202,7 @@ MotionResult MotionPlanner::PlanTilt(const JointVector& q_start, const Vector3& 
 
 MotionResult MotionPlanner::PlanJoint(const JointVector& q_start, const JointVector& q_goal,
                                       const MotionOptions& options) const {
-  const FollowContext context{arm_, layout_.X_FE, clearance_, options};
+  const FollowContext context = Following(options);
   Chain chain(arm_, q_start, 1);
   chain.Add(JointSegment(context, q_start, q_goal));
   return chain.Take();
@@ -202,7 +211,7 @@ MotionResult MotionPlanner::PlanJoint(const JointVector& q_start, const JointVec
 MotionResult MotionPlanner::PlanTransfer(const JointVector& q_start,
                                          const RigidTransform& X_BE_goal,
                                          const MotionOptions& options) const {
-  const FollowContext context{arm_, layout_.X_FE, clearance_, options};
+  const FollowContext context = Following(options);
   const RigidTransform X_BE_start = PoseOfE(q_start);
   const double travel_z_m =
       bin_.X_BN.translation().z() + options.travel_height_m.value_or(layout_.carry_height_m);

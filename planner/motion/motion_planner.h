@@ -7,7 +7,6 @@
 
 #include "hw_bridge/cell/checked_trajectory.h"
 #include "models/clearance.h"
-#include "models/layout.h"
 
 namespace tubetwin {
 
@@ -35,7 +34,8 @@ struct MotionOptions {
   double joint_speed_share = 0.8;
   double joint_acceleration_share = 0.9;
 
-  double opening_m = 0.085;  ///< Between the pads, for the clearance of the fingers.
+  /// Between the pads, for the clearance of the fingers; fully open when not given.
+  std::optional<double> opening_m;
   /// Smallest clearance of everything but the fingers in the bin. A start that is nearer already is
   /// allowed as long as the motion does not go nearer still.
   double clearance_m = 0.005;
@@ -49,17 +49,19 @@ struct MotionOptions {
   std::optional<double> travel_height_m;
 };
 
+struct FollowContext;
+
 /// Plans every motion of the cell: straight lines, tilts, joint moves, transfers. Each result runs
 /// from rest to rest, was followed sample by sample with one branch of the inverse kinematics, is
 /// free of collision and jerk limited, and is sampled every 10 ms. Immutable; thread safe.
 ///
-///     const MotionPlanner motion(cell.arm_model, cell.layout, cell.bin);
+///     const MotionPlanner motion(cell.model, cell.bin);
 ///     const MotionResult result = motion.PlanLine(q, X_BE_above, options);
 ///     if (const auto* rejection = std::get_if<MotionRejection>(&result)) ...
 class MotionPlanner {
  public:
-  /// `arm` must outlive this; layout and bin are copied.
-  MotionPlanner(const ArmModel& arm, const CellLayout& layout, const Bin& bin);
+  /// `model` must outlive this; the bin is copied.
+  MotionPlanner(const CellModel& model, const Bin& bin);
 
   /// Straight line of E with the orientation turning evenly (slerp) on the same path parameter.
   MotionResult PlanLine(const JointVector& q_start, const RigidTransform& X_BE_goal,
@@ -94,14 +96,18 @@ class MotionPlanner {
   /// X_BE at joints q.
   RigidTransform PoseOfE(const JointVector& q) const;
 
-  /// X_BE that puts the scanner at X_BS.
+  /// X_BE that puts the scanner at X_BS; for one on a stand, where the tool is out of its view.
   RigidTransform PoseOfEForScan(const RigidTransform& X_BS) const;
 
+  const CellModel& model() const { return model_; }
   const ClearanceChecker& clearance() const { return clearance_; }
 
  private:
+  FollowContext Following(const MotionOptions& options) const;
+
+  const CellModel& model_;
   const ArmModel& arm_;
-  CellLayout layout_;
+  const CellLayout& layout_;
   Bin bin_;
   ClearanceChecker clearance_;
 };

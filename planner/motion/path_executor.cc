@@ -21,7 +21,7 @@ StepOutcome StepOutcome::Trouble(const WaitOutcome& outcome, const std::string& 
 }
 
 PathExecutor::PathExecutor(Cell& cell)
-    : cell_(cell), planner_(cell.arm_model, cell.layout, cell.bin), fingers_(cell.gripper.State()) {
+    : cell_(cell), planner_(cell.model, cell.bin), fingers_(cell.gripper.State()) {
   start_.q = cell.arm.State().q;
 }
 

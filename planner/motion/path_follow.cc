@@ -41,7 +41,7 @@ class Bounds {
       upper_[i] = std::max(joint.upper_rad - o.joint_margin_rad, q_start[i] + kStartSlack_rad);
     }
     const double max_m = std::max(o.clearance_m, o.finger_clearance_m) + kLookAhead_m;
-    const auto at_start = context.clearance.Check(q_start, o.opening_m, max_m);
+    const auto at_start = context.clearance.Check(q_start, context.opening_m, max_m);
     finger_clearance_m_ =
         std::min(o.finger_clearance_m, at_start.fingers.clearance_m - kStartSlack_m);
     clearance_m_ = std::min(o.clearance_m, at_start.others.clearance_m - kStartSlack_m);
@@ -68,7 +68,7 @@ class Bounds {
             Why::kSingular, Format("manipulability %.3f, %.3f asked", m, manipulability_), 0.0, -1};
       }
     }
-    const auto near = context_.clearance.Check(q, context_.options.opening_m, enough_m_);
+    const auto near = context_.clearance.Check(q, context_.opening_m, enough_m_);
     if (near.others.clearance_m < clearance_m_) return Collision(near.others, clearance_m_);
     if (near.fingers.clearance_m < finger_clearance_m_) {
       return Collision(near.fingers, finger_clearance_m_);

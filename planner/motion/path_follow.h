@@ -14,6 +14,7 @@ struct FollowContext {
   const RigidTransform& X_FE;
   const ClearanceChecker& clearance;
   const MotionOptions& options;
+  double opening_m;  ///< Between the pads.
 };
 
 /// Follows the path from q_start on one branch and checks limits, singularity, jumps and clearances

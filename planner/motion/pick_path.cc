@@ -65,8 +65,9 @@ MotionResult PlanSegment(const MotionPlanner& planner, const PathSegment& segmen
 /// Plans segment after segment.
 class PathChecker {
  public:
-  PathChecker(const MotionPlanner& planner, const PickPath& path)
-      : planner_(planner), path_(path) {}
+  PathChecker(const MotionPlanner& planner, const PickPath& path) : planner_(planner), path_(path) {
+    out_.end_.opening_m = planner.model().gripper.stroke_m;
+  }
 
   PathCheck From(const PathStart& start) {
     out_.end_ = start;

@@ -54,7 +54,7 @@ struct Turn {
 /// follows: that of the command, or what is to be held.
 struct MoveFingers {
   GripperCommand command;
-  double expected_opening_m = 0.085;
+  double expected_opening_m = 0.0;
 };
 /// Time passes.
 struct Pause {
@@ -83,7 +83,7 @@ struct PickPath {
 /// Where a path begins: the arm's joints and the opening between the pads.
 struct PathStart {
   JointVector q = JointVector::Zero();
-  double opening_m = 0.085;
+  double opening_m = 0.0;
 };
 
 /// A path every motion of which was planned and checked, each from where the one before ends. Only

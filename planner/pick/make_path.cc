@@ -1,6 +1,5 @@
 #include "planner/pick/make_path.h"
 
-#include "models/gripper_spec.h"
 #include "planner/motion/path_builder.h"
 #include "planner/pick/tool_path.h"
 
@@ -20,14 +19,15 @@ std::vector<PathGoal> From(const RigidTransform& X_NE_start,
 
 }  // namespace
 
-RigidTransform ToolPoseAtGrasp(const Grasp& grasp, double radius_m, const Bin& bin) {
-  return bin.X_BN * grasp.X_NG * Translation(0, 0, PadRetreat(2.0 * radius_m));
+RigidTransform ToolPoseAtGrasp(const Grasp& grasp, double radius_m, const GripperSpec& gripper,
+                               const Bin& bin) {
+  return bin.X_BN * grasp.X_NG * Translation(0, 0, PadRetreat(gripper, 2.0 * radius_m));
 }
 
 PickPath MakePickPath(const Grasp& grasp, const CandidateMotion& motion,
                       const PickPathInput& input) {
   const PathConfig& config = input.config;
-  const RigidTransform X_BE = ToolPoseAtGrasp(grasp, input.tube_radius_m, input.bin);
+  const RigidTransform X_BE = ToolPoseAtGrasp(grasp, input.tube_radius_m, input.gripper, input.bin);
   const RigidTransform X_BE_above = X_BE * Translation(0, 0, -config.approach_m);
   PathBuilder path(config, 0.0);
   path.Open("opening", grasp.opening_m);
@@ -59,7 +59,8 @@ FeasibilityFunction PathFeasibility(const MotionPlanner& planner, const Bin& bin
                                     const PathConfig& config, double tube_radius_m) {
   return [&, tube_radius_m](const Grasp& grasp,
                             const CandidateMotion& motion) -> std::optional<std::string> {
-    const PickPath path = MakePickPath(grasp, motion, {bin, config, tube_radius_m, 0.0});
+    const PickPath path =
+        MakePickPath(grasp, motion, {planner.model().gripper, bin, config, tube_radius_m, 0.0});
     const auto refusal = RefusalFromOver(planner, path);
     if (refusal) return refusal->reason;
     return std::nullopt;

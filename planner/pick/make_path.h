@@ -1,6 +1,7 @@
 #pragma once
 
 #include "models/bin.h"
+#include "models/gripper_spec.h"
 #include "planner/motion/path_config.h"
 #include "planner/motion/pick_path.h"
 #include "planner/pick/pick_plan.h"
@@ -18,6 +19,7 @@ enum PickStage {
 
 /// What a path is made for besides a plan's grasp and motion.
 struct PickPathInput {
+  const GripperSpec& gripper;
   const Bin& bin;
   const PathConfig& config;
   double tube_radius_m = 0.0;
@@ -26,7 +28,8 @@ struct PickPathInput {
 
 /// X_BE (E as fixed at the flange) at the moment of closing on a tube of `radius_m`: the pads'
 /// centre is then at the grasp, a little behind E.
-RigidTransform ToolPoseAtGrasp(const Grasp& grasp, double radius_m, const Bin& bin);
+RigidTransform ToolPoseAtGrasp(const Grasp& grasp, double radius_m, const GripperSpec& gripper,
+                               const Bin& bin);
 
 /// The one description of how a tube is picked: to over the grasp, down, closing, the motion.
 PickPath MakePickPath(const Grasp& grasp, const CandidateMotion& motion,

@@ -35,8 +35,6 @@ constexpr int kGraspsAsked = 3;
 
 std::string Millimetres(double length_m) { return Number(std::round(1e3 * length_m)) + " mm"; }
 
-double HalfFinger_m() { return 0.5 * GripperSpec().pad_width_m; }
-
 // Vertical tool whose x lies along `x_N`: pads and the bars behind them touch at once.
 Matrix3 ToolAlong(const Vector3& x_N) {
   Matrix3 R_NE;
@@ -187,7 +185,7 @@ class Nudger {
 
   // As many strokes as the travel needs; false with the reason when one does not fit.
   bool AddStrokes(const PerceivedTube& tube, Nudge& nudge, std::string& reason) const {
-    const double reach_m = HalfFinger_m() - kEdge_m;
+    const double reach_m = 0.5 * problem_.gripper.spec.pad_width_m - kEdge_m;
     double gone_m = 0.0;
     while (gone_m < nudge.travel_m - 1e-6) {
       if (static_cast<int>(nudge.strokes.size()) == kMaxStrokes) {
@@ -205,9 +203,10 @@ class Nudger {
         step_m = nudge.travel_m - gone_m;
         if (nudge.rolls) step_m = std::min(step_m, reach_m - off_m);
         NudgeStroke stroke;
-        stroke.X_NE = MakeTransform(ToolAlong(nudge.direction_N),
-                                    crown + off_m * nudge.direction_N +
-                                        Vector3(0, 0, 0.5 * GripperSpec().pad_height_m - kPress_m));
+        stroke.X_NE =
+            MakeTransform(ToolAlong(nudge.direction_N),
+                          crown + off_m * nudge.direction_N +
+                              Vector3(0, 0, 0.5 * problem_.gripper.spec.pad_height_m - kPress_m));
         stroke.travel_N = (nudge.rolls ? 2.0 : 1.0) * step_m * nudge.direction_N;
         const std::string against = Against(tube, nudge, stroke);
         if (against.empty()) {
@@ -244,22 +243,22 @@ class Nudger {
     over.half_m.z() -= 0.5 * kOverTube_m;
     over.X_AB.translation().z() -= 0.5 * kOverTube_m;
     int points = 0;
-    for (const auto& [name, box, upper] : {std::tuple{"fingers", boxes.fingers, over},
-                                           std::tuple{"chassis", boxes.chassis, boxes.chassis},
-                                           std::tuple{"gripper base", boxes.base, boxes.base}}) {
-      const OrientedBox box_N = Moved(X_NE, box), upper_N = Moved(X_NE, upper);
+    const std::vector<GripperGeometry::NamedBox> parts = Parts(boxes);
+    for (const auto& [name, box] : parts) {
+      const bool fingers = &name == &parts.front().name;
+      const OrientedBox box_N = Moved(X_NE, box), upper_N = fingers ? Moved(X_NE, over) : box_N;
       if (WallClearance(box_N, problem_.bin, 2.0 * min_m) < min_m) {
-        return std::string(name) + " too near to a wall";
+        return name + " too near to a wall";
       }
       for (const PerceivedTube& other : problem_.scene.tubes) {
         if (other.id == tube.id) continue;
         if (LineBoxDistance(other.centerline_N, box_N, 2.0 * min_m + other.radius_m) <
             min_m + other.radius_m) {
-          return std::string(name) + " too near to tube " + std::to_string(other.id);
+          return name + " too near to tube " + std::to_string(other.id);
         }
       }
       if (MeetsOwn(tube, nudge.at_m, upper_N, min_m)) {
-        return std::string(name) + " too near to another part of the tube";
+        return name + " too near to another part of the tube";
       }
       points +=
           static_cast<int>(std::count_if(problem_.points_N.begin(), problem_.points_N.end(),

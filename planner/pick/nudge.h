@@ -56,8 +56,8 @@ enum class StrokeStage { kPress, kDrag, kLift };
 int NudgeStage(int stroke, StrokeStage stage);
 
 /// The one description of how a tube is nudged. Contact ends pressing and dragging.
-PickPath MakeNudgePath(const Nudge& nudge, const Bin& bin, const PathConfig& config,
-                       const NudgeConfig& nudging);
+PickPath MakeNudgePath(const Nudge& nudge, const GripperSpec& gripper, const Bin& bin,
+                       const PathConfig& config, const NudgeConfig& nudging);
 
 /// Asks the arm whether it could run such paths, from wherever it is. All must outlive the
 /// function.

@@ -31,10 +31,10 @@ void AddStroke(PathBuilder& path, const NudgeStroke& stroke, const Bin& bin,
 
 int NudgeStage(int stroke, StrokeStage stage) { return 1 + 3 * stroke + static_cast<int>(stage); }
 
-PickPath MakeNudgePath(const Nudge& nudge, const Bin& bin, const PathConfig& config,
-                       const NudgeConfig& nudging) {
+PickPath MakeNudgePath(const Nudge& nudge, const GripperSpec& gripper, const Bin& bin,
+                       const PathConfig& config, const NudgeConfig& nudging) {
   PathBuilder path(config);
-  path.Close("closing", GripperSpec().min_force_N, 0.0);
+  path.Close("closing", gripper.min_force_N, 0.0);
   path.Transfer("to over the tube",
                 Translation(0, 0, config.approach_m) * bin.X_BN * nudge.strokes.front().X_NE);
   for (const NudgeStroke& stroke : nudge.strokes) AddStroke(path, stroke, bin, config, nudging);
@@ -44,7 +44,8 @@ PickPath MakeNudgePath(const Nudge& nudge, const Bin& bin, const PathConfig& con
 NudgeFeasibility NudgePathFeasibility(const MotionPlanner& planner, const Bin& bin,
                                       const PathConfig& config, const NudgeConfig& nudging) {
   return [&](const Nudge& nudge) -> std::optional<std::string> {
-    const auto refusal = RefusalFromOver(planner, MakeNudgePath(nudge, bin, config, nudging));
+    const auto refusal = RefusalFromOver(
+        planner, MakeNudgePath(nudge, planner.model().gripper, bin, config, nudging));
     if (refusal) return refusal->reason;
     return std::nullopt;
   };

@@ -16,11 +16,11 @@ std::optional<RunnablePlan> FirstRunnable(const PickProblem& problem,
     const PickPlan& plan = plans[i];
     const Polyline& line_N = TubeOf(problem.scene, plan.target).centerline_N;
     const HeldPart held = HeldPartOf(Transformed(plan.grasp.X_NG.inverse(), line_N), problem.part);
-    PathCheck check =
-        Check(planner,
-              MakePickPath(plan.grasp, plan.motion,
-                           {problem.bin, config, problem.part.radius_m, held.period_s}),
-              start);
+    PathCheck check = Check(planner,
+                            MakePickPath(plan.grasp, plan.motion,
+                                         {planner.model().gripper, problem.bin, config,
+                                          problem.part.radius_m, held.period_s}),
+                            start);
     if (const MotionRejection* refusal = RefusalOf(check)) {
       rejections.push_back(
           GraspChoice::ArmRejection(plan.motion, plan.grasp.at_m, refusal->reason));

@@ -4,17 +4,16 @@
 #include <cmath>
 
 #include "models/base/error.h"
-#include "models/gripper_spec.h"
 #include "planner/scene_query/tubes.h"
 
 namespace tubetwin {
 namespace {
 
 constexpr double kStep_m = 0.005;
-constexpr double kChord_m = 0.001;    // Error of simplified lines, part of the margin.
-constexpr double kOverlap_m = 0.003;  // More than perception's error: one lies in the other.
-constexpr double kFingers_m = 0.09;   // Length of the fingers over what they hold.
-constexpr double kNearer_m = 3e-4;    // Coming nearer by less than this is arithmetic, not a push.
+constexpr double kChord_m = 0.001;        // Error of simplified lines, part of the margin.
+constexpr double kOverlap_m = 0.003;      // More than perception's error: one lies in the other.
+constexpr double kOverFingers_m = 0.015;  // of what they hang on, over what they hold
+constexpr double kNearer_m = 3e-4;  // Coming nearer by less than this is arithmetic, not a push.
 
 double Top(const Polyline& line) {
   double top = line.front().z();
@@ -107,12 +106,12 @@ int CountTouched(const TubeScene& scene, const TubePath& motion, double margin_m
 }
 
 std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const TubePath& motion,
-                                         const Vector3& p_N, double margin_m) {
+                                         const Vector3& p_N, const GripperSpec& gripper,
+                                         double margin_m) {
   TT_CHECK(!motion.waypoints_N.empty());
-  const GripperSpec gripper;
   const double radius_m = std::hypot(
       0.5 * gripper.pad_width_m, TubeOf(scene, motion.tube).radius_m + gripper.finger_thickness_m);
-  const Polyline fingers = {p_N, p_N + Vector3(0, 0, kFingers_m)};
+  const Polyline fingers = {p_N, p_N + Vector3(0, 0, gripper.finger_length_m + kOverFingers_m)};
   const Track track = TrackOf(motion, fingers);
   if (track.rising_from == 0) return std::nullopt;
   return First(Touched(scene, motion, fingers, radius_m, track, margin_m, 1));

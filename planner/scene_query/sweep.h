@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "models/gripper_spec.h"
 #include "perception/scene/tube_scene.h"
 #include "planner/scene_query/object_path.h"
 
@@ -22,6 +23,7 @@ int CountTouched(const TubeScene& scene, const TubePath& motion, double margin_m
 /// The same for the closed fingers that hold the tube at p_N, as an upright cylinder around them. A
 /// motion that only rises takes them out as they came in: nothing.
 std::optional<int> FirstTouchedByFingers(const TubeScene& scene, const TubePath& motion,
-                                         const Vector3& p_N, double margin_m = 0.003);
+                                         const Vector3& p_N, const GripperSpec& gripper,
+                                         double margin_m = 0.003);
 
 }  // namespace tubetwin

@@ -23,7 +23,7 @@
 #include "models/arm/arm.h"
 #include "models/base/error.h"
 #include "models/base/json.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 #include "perception/perceive.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/evaluator/rollout.h"
@@ -33,6 +33,8 @@
 #include "planner/pick/rollout_scheduler.h"
 #include "planner/scene_query/voxel_downsample.h"
 #include "scenes/pile.h"
+#include "tests/support/paper_cell.h"
+#include "tests/support/paper_scan.h"
 #include "tests/support/planning.h"
 #include "twin/render/scan/ray_scene.h"
 
@@ -101,10 +103,10 @@ ScanGeometry GeometryOf(const Pile& pile) {
 std::vector<OrganizedCloud> Look(const Pile& pile, const RoundPhysics& physics,
                                  const RandomStream& stream, const Options& options) {
   std::vector<OrganizedCloud> views;
-  ScanSettings settings;
+  ScanSettings settings = PaperScan();
   settings.noise_scale = physics.depth_noise_scale;
   const ScanGeometry geometry = GeometryOf(pile);
-  for (const RigidTransform& X_BS : DefaultScanPoses(pile.bin)) {
+  for (const RigidTransform& X_BS : ScanPosesOf(PaperCell(), pile.bin)) {
     const RigidTransform X_NS = pile.bin.X_BN.inverse() * X_BS;
     views.push_back(CastScan(geometry, X_NS * physics.X_SbelievedS, settings,
                              stream.Fork("view", views.size()), Parallelism{options.threads}));
@@ -257,7 +259,7 @@ class Trial {
   }
 
   Json Choice() {
-    const MotionPlanner motion(Hc10(), CellLayout(), pile_.bin);
+    const MotionPlanner motion(PaperCell(), pile_.bin);
     const std::vector<Vector3> points_N = VoxelDownsample(views_, pile_.bin);
     const PathConfig paths;
     const PlanResult result = PlanPicks(

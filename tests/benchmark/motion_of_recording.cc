@@ -12,6 +12,7 @@
 #include "hw_bridge/recording/cell_recording.h"
 #include "models/arm/arm.h"
 #include "models/base/json.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -63,7 +64,9 @@ class Motions {
   }
 
  private:
-  Vector3 E(const JointVector& q) const { return (FlangePose(Hc10(), q) * X_FE_).translation(); }
+  Vector3 E(const JointVector& q) const {
+    return (FlangePose(PaperCell().arm, q) * X_FE_).translation();
+  }
 
   double OffPath_mm(const Vector3& p_BE, double progress_s) const {
     double least_m = 1e9;
@@ -88,7 +91,7 @@ class Motions {
 
 Json Measure(const std::string& path) {
   CellRecording recording(path);
-  Motions motions(recording.header().layout);
+  Motions motions(recording.header().model.layout);
   TimeNs now{0};
   while (const std::optional<CellEvent> event = recording.Next()) {
     if (const auto* read = std::get_if<TimeRead>(&*event)) now = read->now;

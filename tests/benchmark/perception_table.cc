@@ -21,11 +21,13 @@
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 #include "models/physics.h"
 #include "perception/perceive.h"
 #include "scenes/pile.h"
 #include "tests/support/graph_metrics.h"
+#include "tests/support/paper_cell.h"
+#include "tests/support/paper_scan.h"
 #include "twin/render/scan/ray_scene.h"
 
 namespace tubetwin {
@@ -109,7 +111,7 @@ Look LookFromAbove(const Pile& pile, RandomStream stream, const Options& options
   const Vector3 aim(stream.Uniform(-0.02, 0.02), stream.Uniform(-0.02, 0.02), 0.0);
   const Matrix3 R_NS = tilt * RotX(kPi);
   const RigidTransform X_NS = MakeTransform(R_NS, aim - kHeight_m * R_NS.col(2));
-  const RayScene scene(GeometryOf(pile), X_NS, ScannerSpec{});
+  const RayScene scene(GeometryOf(pile), X_NS, PaperCell().scanner);
   HitImage hits(camera);
   scene.CastRows(camera, 0, camera.height, false, hits);
   OrganizedCloud cloud;
@@ -137,14 +139,14 @@ Look LookFromAbove(const Pile& pile, RandomStream stream, const Options& options
 
 Look LookFromCell(const Pile& pile, const RandomStream& stream, const Options& options) {
   Look out;
-  ScanSettings settings;
+  ScanSettings settings = PaperScan();
   settings.noise_scale = options.noise;
   settings.labels = true;
   const RoundPhysics physics = options.hand_eye
                                    ? DrawPhysics(PhysicsRanges{}, pile.part, stream.Fork("physics"))
                                    : NominalPhysics(pile.part);
   const ScanGeometry geometry = GeometryOf(pile);
-  for (const RigidTransform& X_BS : DefaultScanPoses(pile.bin)) {
+  for (const RigidTransform& X_BS : ScanPosesOf(PaperCell(), pile.bin)) {
     const RigidTransform X_NS = pile.bin.X_BN.inverse() * X_BS;
     out.X_NS_true.push_back(X_NS * physics.X_SbelievedS);
     out.clouds.push_back(CastScan(geometry, out.X_NS_true.back(), settings,

@@ -6,10 +6,12 @@
 #include "models/arm/arm.h"
 #include "models/base/cloud/cloud.h"
 #include "models/base/random.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 #include "perception/perceive.h"
 #include "planner/evaluator/evaluator.h"
 #include "scenes/pile.h"
+#include "tests/support/paper_cell.h"
+#include "tests/support/paper_scan.h"
 #include "tests/support/planning.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/cell/twin_cell.h"
@@ -65,13 +67,13 @@ TubeScene Scene() {
 
 /// One view with every effect; argument: 1 for 2064 x 1544, 0 for 1032 x 772. All cores.
 void BM_Scan(benchmark::State& state) {
-  ScanSettings settings;
+  ScanSettings settings = PaperScan();
   if (state.range(0) == 1) {
     settings.width = settings.spec.full_width;
     settings.height = settings.spec.full_height;
   }
   const ScanGeometry geometry = Geometry();
-  const RigidTransform X_BS = DefaultScanPoses(SevenTubes().bin)[1];
+  const RigidTransform X_BS = ScanPosesOf(PaperCell(), SevenTubes().bin)[1];
   for (auto _ : state) {
     benchmark::DoNotOptimize(
         CastScan(geometry, X_BS, settings, RandomStream(1, 0, "bench"), Parallelism::All()));
@@ -81,10 +83,10 @@ BENCHMARK(BM_Scan)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime()
 
 /// A PCD file of one view of 2064 x 1544 to a cloud.
 void BM_ReadCloud(benchmark::State& state) {
-  ScanSettings settings;
+  ScanSettings settings = PaperScan();
   settings.width = settings.spec.full_width;
   settings.height = settings.spec.full_height;
-  const RigidTransform X_BS = DefaultScanPoses(SevenTubes().bin)[1];
+  const RigidTransform X_BS = ScanPosesOf(PaperCell(), SevenTubes().bin)[1];
   const TemporaryFolder folder;
   WritePcd(CastScan(Geometry(), X_BS, settings, RandomStream(1, 0, "bench"), Parallelism::All()),
            folder / "view.pcd");
@@ -96,7 +98,7 @@ BENCHMARK(BM_ReadCloud)->Unit(benchmark::kMillisecond);
 void BM_Perceive(benchmark::State& state) {
   std::vector<OrganizedCloud> views;
   const Bin bin = SevenTubes().bin;
-  for (const RigidTransform& X_BS : DefaultScanPoses(bin)) {
+  for (const RigidTransform& X_BS : ScanPosesOf(PaperCell(), bin)) {
     views.push_back(
         CastScan(Geometry(), X_BS, {}, RandomStream(1, views.size(), "bench"), Parallelism::All()));
     views.back().X_NS = bin.X_BN.inverse() * X_BS;
@@ -127,13 +129,15 @@ BENCHMARK(BM_EvaluateFull)->Unit(benchmark::kMillisecond)->UseRealTime();
 /// All branches of the arm's inverse kinematics at one pose.
 void BM_InverseAll(benchmark::State& state) {
   const RigidTransform X_BF = MakeTransform(RotZ(0.3) * RotX(kPi - 0.2), Vector3(0.6, -0.1, 0.4));
-  for (auto _ : state) benchmark::DoNotOptimize(InverseAll(Hc10(), X_BF));
+  for (auto _ : state) benchmark::DoNotOptimize(InverseAll(PaperCell().arm, X_BF));
 }
 BENCHMARK(BM_InverseAll)->Unit(benchmark::kMicrosecond);
 
 /// One second of the whole cell standing still with seven tubes, one core.
 void BM_CellSecond(benchmark::State& state) {
   TwinCellOptions options;
+  options.model = PaperCell();
+  options.scan = PaperScan();
   options.physics = NominalPhysics(SevenTubes().part);
   TwinCell twin(SevenTubes(), options);
   for (auto _ : state) twin.cell().clock.AdvanceTo(twin.cell().clock.Now() + FromSeconds(1.0));

@@ -28,13 +28,14 @@
 #include "models/base/config/config.h"
 #include "models/base/error.h"
 #include "models/base/json.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 #include "planner/evaluator/evaluator.h"
 #include "planner/grasp/grasps.h"
 #include "planner/pick/make_path.h"
 #include "planner/pick/pick_planner.h"
 #include "planner/pick/rollout_scheduler.h"
 #include "scenes/pile.h"
+#include "tests/support/paper_cell.h"
 #include "tests/support/planning.h"
 #include "tests/support/tube_scenes.h"
 
@@ -207,7 +208,7 @@ class Trial {
       : options_(options),
         pile_(pile),
         scene_(scene),
-        motion_(Hc10(), CellLayout(), pile.bin),
+        motion_(PaperCell(), pile.bin),
         feasible_(PathFeasibility(motion_, pile_.bin, paths_, pile.part.radius_m)) {
     ConfigSource source;
     for (const std::string& text : options.overrides) source.AddOverride(text);

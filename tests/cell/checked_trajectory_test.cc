@@ -1,6 +1,7 @@
 #include "hw_bridge/cell/checked_trajectory.h"
 
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -15,7 +16,7 @@ TrajectoryPoint Point(double time_s, const JointVector& q,
 }
 
 TrajectoryRejection Rejected(const JointTrajectory& trajectory) {
-  const auto result = CheckTrajectory(Hc10(), trajectory);
+  const auto result = CheckTrajectory(PaperCell().arm, trajectory);
   REQUIRE(std::holds_alternative<TrajectoryRejection>(result));
   return std::get<TrajectoryRejection>(result);
 }
@@ -24,7 +25,7 @@ const JointVector kHome = (JointVector() << 0, 0.3, 1.5, 0, -1.2, 0).finished();
 
 TEST_CASE("A slow joint move from rest to rest passes and keeps its points", "[unit]") {
   const JointVector goal = kHome + 0.1 * JointVector::Ones();
-  const auto result = CheckTrajectory(Hc10(), {{Point(0, kHome), Point(1, goal)}});
+  const auto result = CheckTrajectory(PaperCell().arm, {{Point(0, kHome), Point(1, goal)}});
   REQUIRE(std::holds_alternative<CheckedTrajectory>(result));
   const auto& checked = std::get<CheckedTrajectory>(result);
   CHECK(checked.duration_s() == 1.0);
@@ -59,15 +60,16 @@ TEST_CASE("Speed and acceleration above the limits are refused by name", "[unit]
   JointVector goal = kHome;
   goal[5] += 2.0;
   const double top = 1.5 * 2.0;
-  const double T_speed = 0.9 * top / Hc10().joints[5].max_speed_rad_s;
+  const double T_speed = 0.9 * top / PaperCell().arm.joints[5].max_speed_rad_s;
   CHECK_THAT(Rejected({{Point(0, kHome), Point(T_speed, goal)}}).reason,
              Catch::Contains("joint 6"));
-  const double T_acceleration = 0.98 * std::sqrt(12.0 / Hc10().joints[5].max_acceleration_rad_s2);
-  CHECK(top / T_acceleration < Hc10().joints[5].max_speed_rad_s);
+  const double T_acceleration =
+      0.98 * std::sqrt(12.0 / PaperCell().arm.joints[5].max_acceleration_rad_s2);
+  CHECK(top / T_acceleration < PaperCell().arm.joints[5].max_speed_rad_s);
   CHECK_THAT(Rejected({{Point(0, kHome), Point(T_acceleration, goal)}}).reason,
              Catch::Contains("degrees/s^2"));
   const auto slower =
-      CheckTrajectory(Hc10(), {{Point(0, kHome), Point(T_acceleration * 1.03, goal)}});
+      CheckTrajectory(PaperCell().arm, {{Point(0, kHome), Point(T_acceleration * 1.03, goal)}});
   CHECK(std::holds_alternative<CheckedTrajectory>(slower));
 }
 

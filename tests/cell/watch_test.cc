@@ -2,6 +2,7 @@
 
 #include "tests/support/catch.h"
 #include "tests/support/fake_cell.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -173,7 +174,8 @@ TEST_CASE("A stretched trajectory keeps its path and its limits", "[unit]") {
   const CheckedTrajectory move = fake.Move(0.5, 1.0);
   const CheckedTrajectory longer = move.Stretched(3.0);
   CHECK(longer.duration_s() == Approx(3.0));
-  CHECK(std::holds_alternative<CheckedTrajectory>(CheckTrajectory(Hc10(), longer.trajectory())));
+  CHECK(std::holds_alternative<CheckedTrajectory>(
+      CheckTrajectory(PaperCell().arm, longer.trajectory())));
   for (double u = 0.0; u <= 1.0; u += 0.1) {
     const JointVector off = Sample(move.trajectory(), u).q - Sample(longer.trajectory(), 3.0 * u).q;
     CHECK(off.cwiseAbs().maxCoeff() < 1e-12);

@@ -6,6 +6,7 @@
 #include "models/base/random.h"
 #include "tests/codecs/rtu_line.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_scale.h"
 
 namespace tubetwin {
 namespace {
@@ -151,7 +152,7 @@ TEST_CASE("Bits that mean nothing are not looked at", "[unit]") {
 }
 
 TEST_CASE("Openings, speeds and forces become bytes and back", "[unit]") {
-  const GripperScale scale;
+  const GripperScale scale = PaperScale();
   CHECK(scale.PositionOf(0.085) == 3);
   CHECK(scale.PositionOf(0.0) == 230);
   CHECK(scale.OpeningOf(3) == 0.085);

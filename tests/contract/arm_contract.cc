@@ -5,6 +5,7 @@
 #include "models/base/error.h"
 #include "tests/contract/advance.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 constexpr double kStanding_rad = 0.002;
 
 CheckedTrajectory Checked(JointTrajectory trajectory) {
-  const auto checked = CheckTrajectory(Hc10(), std::move(trajectory));
+  const auto checked = CheckTrajectory(PaperCell().arm, std::move(trajectory));
   if (const auto* why = std::get_if<TrajectoryRejection>(&checked)) FAIL(why->reason);
   return std::get<CheckedTrajectory>(checked);
 }

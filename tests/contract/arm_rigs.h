@@ -9,6 +9,7 @@
 #include "hw_bridge/emulators/yaskawa/arm_emulator.h"
 #include "tests/contract/arm_contract.h"
 #include "tests/drivers/served_arm.h"
+#include "tests/support/paper_cell.h"
 #include "tests/twin_cell/cell_fixture.h"
 
 namespace tubetwin::test {
@@ -45,16 +46,15 @@ class DriverArmRig : public ArmContractRig {
   DriverArmRig()
       : twin_(TubeAside(), NominalOptions(TubeAside())),
         joint_(twin_),
-        emulator_(io_, impl().arm, Hc10(), OnAnyPort()),
+        emulator_(io_, impl().arm, PaperCell().arm, OnAnyPort()),
         thread_(1.0, mutex_, [this](TimeNs) { Period(); }),
-        driver_(Config(), Hc10(), clock_),
+        driver_(Config(), PaperCell().arm, clock_),
         cell_{clock_,
               driver_,
               twin_.cell().gripper,
               twin_.cell().wrist,
               twin_.cell().scanner,
-              Hc10(),
-              twin_.cell().layout,
+              twin_.cell().model,
               twin_.cell().bin,
               SafetyLimits(),
               false} {}

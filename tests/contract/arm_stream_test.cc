@@ -15,7 +15,7 @@ constexpr double kAllowed_mm = 0.5;
 constexpr int kMostShift = 3;
 
 Vector3 Fingers(const Cell& cell, const JointVector& q) {
-  return (FlangePose(cell.arm_model, q) * cell.layout.X_FE).translation();
+  return (FlangePose(cell.model.arm, q) * cell.model.layout.X_FE).translation();
 }
 
 /// Largest distance of the fingers at equal times, for the best common beginning.

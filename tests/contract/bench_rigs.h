@@ -10,6 +10,7 @@
 #include "hw_bridge/emulators/emulator.h"
 #include "scenes/engine/mj_handles.h"
 #include "tests/drivers/served_arm.h"
+#include "tests/support/paper_cell.h"
 #include "tests/twin_cell/cell_fixture.h"
 #include "twin/cell/arm_body.h"
 #include "twin/cell/gripper_body.h"
@@ -58,7 +59,9 @@ class RigWorld {
     Eigen::Map<Vector3>(data.xfrc_applied + 6 * body) = R_WK * force_K;
     return {force_K, (R_WK.transpose() * (p_WC - p_WK)).cross(force_K)};
   }
-  static double ToolWeight_N() { return (kGripperMass_kg + kCouplingMass_kg) * kGravity; }
+  static double ToolWeight_N() {
+    return (PaperCell().gripper.mass_kg + PaperCell().gripper.coupling_mass_kg) * kGravity;
+  }
 
  private:
   static TwinCellOptions Options() {
@@ -69,8 +72,8 @@ class RigWorld {
 
 /// The same cell with other clock, gripper and sensor.
 inline Cell With(Cell& cell, CellClock& clock, Gripper& gripper, ForceTorqueSensor& wrist) {
-  return {clock,          cell.arm,    gripper,  wrist,          cell.scanner,
-          cell.arm_model, cell.layout, cell.bin, SafetyLimits(), false};
+  return {clock,      cell.arm, gripper,        wrist, cell.scanner,
+          cell.model, cell.bin, SafetyLimits(), false};
 }
 
 /// A world whose time runs by itself, with one emulator before it.

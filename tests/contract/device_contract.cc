@@ -5,6 +5,7 @@
 #include "models/gripper_spec.h"
 #include "tests/contract/advance.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -21,7 +22,7 @@ CheckedTrajectory Moved(const JointVector& from, double by_rad, double duration_
   a.q = from;
   b.q = from + by_rad * JointVector::Ones();
   b.time_s = duration_s;
-  const auto checked = CheckTrajectory(Hc10(), {{a, b}});
+  const auto checked = CheckTrajectory(PaperCell().arm, {{a, b}});
   REQUIRE(std::holds_alternative<CheckedTrajectory>(checked));
   return std::get<CheckedTrajectory>(checked);
 }
@@ -114,7 +115,7 @@ void CheckArmContract(Cell& cell) {
 }
 
 void CheckGripperContract(Cell& cell) {
-  const double stroke_m = GripperSpec().stroke_m;
+  const double stroke_m = PaperCell().gripper.stroke_m;
   CHECK(cell.gripper.State().activated);
   CHECK(cell.gripper.State().fault == 0);
   for (const double opening_m : {0.5 * stroke_m, 0.2 * stroke_m, stroke_m}) {

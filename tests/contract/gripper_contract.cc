@@ -4,6 +4,7 @@
 
 #include "tests/contract/advance.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -12,7 +13,7 @@ constexpr double kCount_m = 0.085 / 227.0;  ///< One count of the position regis
 /// The servo is soft where the tips' weight pulls on it: one count, and one of rounding.
 constexpr double kStands_m = 2 * kCount_m;
 
-const GripperSpec kSpec;
+const GripperSpec& kSpec = PaperCell().gripper;
 
 /// Commands, and what the state says when it first says no longer that it moves.
 GripperState MoveTo(Cell& cell, const GripperCommand& command) {

@@ -6,6 +6,7 @@
 #include "hw_bridge/recording/replay_cell.h"
 #include "tests/contract/bench_rigs.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_scale.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin::test {
@@ -78,6 +79,7 @@ class DriverGripperRig : public GripperContractRig {
       : served_(true,
                 [&](asio::io_context& io, TwinCell::Impl& impl) {
                   GripperEmulatorConfig config;
+                  config.scale = PaperScale();
                   config.port = 0;
                   config.transport = rtu ? "rtu" : "tcp";
                   return std::make_unique<GripperEmulator>(io, impl.gripper, config);
@@ -104,6 +106,7 @@ class DriverGripperRig : public GripperContractRig {
  private:
   RobotiqConfig Config(bool rtu) {
     RobotiqConfig config;
+    config.scale = PaperScale();
     config.host = "127.0.0.1";
     config.transport = rtu ? "rtu" : "tcp";
     if (rtu) config.device = served_.emulator().device();

@@ -63,8 +63,8 @@ class TwinFolderRig : public ScannerRig {
   explicit TwinFolderRig(const std::string& format)
       : tap_(twin_.scanner()), emulator_(tap_, Served(format)), driver_(Link(), [this] {
           Cell& cell = twin_.cell();
-          return cell.bin.X_BN.inverse() * FlangePose(cell.arm_model, cell.arm.State().q) *
-                 cell.layout.X_FS;
+          return cell.bin.X_BN.inverse() * FlangePose(cell.model.arm, cell.arm.State().q) *
+                 cell.model.layout.X_FS;
         }) {}
   Scanner& scanner() override { return driver_; }
   void Step() override {

@@ -6,6 +6,7 @@
 #include "models/gripper_spec.h"
 #include "tests/support/catch.h"
 #include "tests/support/fake_round.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -103,8 +104,9 @@ TEST_CASE("A pick is approach, guarded descent, closing, two lifts, carry, lay a
   const PickPlan& plan = *round.attempt(0).plan;
   const FakeMotion& guarded = world.MotionsOf(MotionKind::kDown).back();
   // The pads move forward as they close: they meet the tube where the plan wants them.
-  const RigidTransform X_BE = world.cell.bin.X_BN * plan.grasp.X_NG *
-                              Translation(0, 0, PadRetreat(2 * world.part.radius_m));
+  const RigidTransform X_BE =
+      world.cell.bin.X_BN * plan.grasp.X_NG *
+      Translation(0, 0, PadRetreat(PaperCell().gripper, 2 * world.part.radius_m));
   CHECK((guarded.X_BE_to.translation() - X_BE.translation()).norm() < 5e-4);
   const std::vector<FakeMotion> lifts = world.MotionsOf(MotionKind::kLift);
   const double first_m = (lifts[0].X_BE_to.translation() - lifts[0].X_BE_from.translation()).norm();
@@ -140,7 +142,8 @@ TEST_CASE("Each attempt tares with empty fingers and an upright tool over the gr
   REQUIRE(round.notes.references_K.size() == 2);
   for (const Wrench& reference_K : round.notes.references_K) {
     CHECK(reference_K.force_N.z() ==
-          Approx((kGripperMass_kg + kCouplingMass_kg) * kGravity).epsilon(1e-6));
+          Approx((PaperCell().gripper.mass_kg + PaperCell().gripper.coupling_mass_kg) * kGravity)
+              .epsilon(1e-6));
   }
 }
 

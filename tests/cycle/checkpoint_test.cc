@@ -131,7 +131,7 @@ TEST_CASE("A stored attempt that is refused or stopped ends as it would have", "
       world.During(MotionKind::kTilt, 1,
                    [&] { world.StopArm(ArmMode::kProtectiveStop, "a person came near"); });
     }
-    if (refused) world.cell.layout.p_BTilt = {1.6, 0.0, 0.575};  // Out of reach.
+    if (refused) world.model.layout.p_BTilt = {1.6, 0.0, 0.575};  // Out of reach.
     FakeRound stored(world);
     stored.setup.cycle.end_at_several = true;
     stored.Run();

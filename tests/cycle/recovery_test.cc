@@ -29,7 +29,7 @@ std::vector<Moment> MomentsOfAPick() {
 
 TEST_CASE("Where the tray is out of reach the tube goes back, and six times are enough", "[unit]") {
   FakeWorld world(TwoTubes());
-  world.cell.layout.X_BT = Translation(0.05, -3.0, 0.10);
+  world.model.layout.X_BT = Translation(0.05, -3.0, 0.10);
   FakeRound round(world);
   round.Run();
   INFO(round.attempts_text());
@@ -47,7 +47,7 @@ TEST_CASE("Where the tray is out of reach the tube goes back, and six times are 
 
 TEST_CASE("After a refusal with a tube in the fingers another grasp is tried first", "[unit]") {
   FakeWorld world(TwoTubes());
-  world.cell.layout.X_BT = Translation(0.05, -3.0, 0.10);
+  world.model.layout.X_BT = Translation(0.05, -3.0, 0.10);
   FakeRound round(world);
   round.Run(2);
   REQUIRE(round.notes.plans.size() == 2);
@@ -63,16 +63,16 @@ TEST_CASE("A refused motion with empty fingers leads to the next plan, never to 
   // Between the first plan and the way to it the arm is pushed, so that its path is planned anew,
   // and joint 2 loses what it needs for it. The next plan finds all as it was.
   int narrowed = 0;
-  const ArmModel whole = world.arm_model;
+  const ArmModel whole = world.model.arm;
   const auto restore = [&] {
-    world.arm_model = whole;
+    world.model.arm = whole;
     world.arm.pushed.setZero();
   };
   round.notes.on_plan = [&] {
     restore();
     if (++narrowed > 1) return;
     world.arm.pushed.setConstant(0.002);
-    world.arm_model.joints[1].upper_rad = world.arm.State().q[1] - 0.3;
+    world.model.arm.joints[1].upper_rad = world.arm.State().q[1] - 0.3;
   };
   round.notes.on_attempt_end = restore;
   round.Run();
@@ -99,15 +99,15 @@ class EndsWhenPutBack : public test::CycleNotes {
 TEST_CASE("What is refused over the tray goes back to the bin, not down where it is", "[unit]") {
   FakeWorld world(TwoTubes());
   FakeRound round(world);
-  const ArmModel whole = world.arm_model;
+  const ArmModel whole = world.model.arm;
   // Pushed over the tray, where joint 2 loses what it needs to go down.
   world.After(MotionKind::kCarry, 1, [&] {
     world.arm.pushed.setConstant(0.002);
-    world.arm_model.joints[1].upper_rad = world.arm.State().q[1] - 0.3;
+    world.model.arm.joints[1].upper_rad = world.arm.State().q[1] - 0.3;
   });
   EndsWhenPutBack notes([&] {
     world.arm.pushed.setZero();
-    world.arm_model = whole;
+    world.model.arm = whole;
   });
   round.setup.stop_requested = [&] { return notes.attempts.size() == 2; };
   RunPickCycle(world.cell, round.setup, notes);

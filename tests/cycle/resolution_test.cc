@@ -186,7 +186,7 @@ TEST_CASE("A strategy whose way is refused puts all back", "[unit]") {
   for (const Strategy& strategy : AllStrategies()) {
     CAPTURE(strategy.name);
     SeveralRound several(strategy);
-    several.world.cell.layout.p_BTilt = {1.6, 0.0, 0.575};  // Out of reach.
+    several.world.model.layout.p_BTilt = {1.6, 0.0, 0.575};  // Out of reach.
     several.round.Run(2);
     CheckEnds(several.round, strategy, "put_back", "");
     CHECK_FALSE(several.round.attempt(0).resolution_outcome.has_value());
@@ -208,8 +208,8 @@ void ForbidTilts(FakeWorld& world, const Strategy& strategy) {
     }
   }
   for (int k = 0; k < kNumJoints; ++k) {
-    world.arm_model.joints[k].lower_rad = low[k] - 0.05;
-    world.arm_model.joints[k].upper_rad = high[k] + 0.05;
+    world.model.arm.joints[k].lower_rad = low[k] - 0.05;
+    world.model.arm.joints[k].upper_rad = high[k] + 0.05;
   }
 }
 
@@ -249,7 +249,7 @@ TEST_CASE("Tilts go about the load's torque or across it, one by one, and come b
       const Vector3 wanted_E = Radians(strategy.tilts_deg[k]) * axis_E;
       CHECK((away[k].rotation_E() - wanted_E).norm() < Radians(1.0));
       CHECK((back[k].rotation_E() + away[k].rotation_E()).norm() < Radians(0.1));
-      CHECK(away[k].X_BE_from.translation().isApprox(world.cell.layout.p_BTilt, 1e-3));
+      CHECK(away[k].X_BE_from.translation().isApprox(world.model.layout.p_BTilt, 1e-3));
     }
   }
 }
@@ -299,10 +299,10 @@ TEST_CASE("Putback lets the load down into the bin at the station and takes it u
   several.round.Run(1);
   const FakeMotion down = world.MotionsOf(MotionKind::kLower).at(0);
   const FakeMotion up = world.MotionsOf(MotionKind::kLift).back();
-  CHECK(down.X_BE_from.translation().isApprox(world.cell.layout.p_BTilt, 1e-3));
+  CHECK(down.X_BE_from.translation().isApprox(world.model.layout.p_BTilt, 1e-3));
   CHECK(down.X_BE_to.translation().z() ==
         Approx(world.cell.bin.X_BN.translation().z() + 0.10).margin(1e-3));
-  CHECK(up.X_BE_to.translation().isApprox(world.cell.layout.p_BTilt, 1e-3));
+  CHECK(up.X_BE_to.translation().isApprox(world.model.layout.p_BTilt, 1e-3));
   CHECK(world.CountMotions(MotionKind::kTilt) == 0);
 }
 

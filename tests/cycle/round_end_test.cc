@@ -137,7 +137,8 @@ TEST_CASE("Every scan is taken from the place that was chosen for it", "[unit]")
   FakeWorld world({Across(-0.30, 0.02), Across(0.0, -0.02), Across(0.30, 0.01)}, LongBin());
   FakeRound round(world);
   round.setup.scan.overhead_m = 0.0;
-  const std::vector<RigidTransform> wanted_BS = ScanPoses(round.setup.scan, world.cell.bin);
+  const std::vector<RigidTransform> wanted_BS =
+      ScanPoses(round.setup.scan, world.model, world.cell.bin);
   int astray = 0;
   const auto look = world.scanner.look;
   world.scanner.look = [&] {

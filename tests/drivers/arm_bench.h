@@ -6,11 +6,12 @@
 #include "tests/drivers/served.h"
 #include "tests/drivers/served_arm.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 
 inline CheckedTrajectory Checked(JointTrajectory trajectory) {
-  const auto checked = CheckTrajectory(Hc10(), std::move(trajectory));
+  const auto checked = CheckTrajectory(PaperCell().arm, std::move(trajectory));
   if (const auto* why = std::get_if<TrajectoryRejection>(&checked)) FAIL(why->reason);
   return std::get<CheckedTrajectory>(checked);
 }
@@ -32,7 +33,7 @@ inline CheckedTrajectory Moved(const JointVector& from, double by_rad, double du
 struct ArmBench {
   explicit ArmBench(bool armed = true) {
     config = served.Config(armed);
-    driver = std::make_unique<YaskawaArm>(config, Hc10(), clock);
+    driver = std::make_unique<YaskawaArm>(config, PaperCell().arm, clock);
   }
   ArmState State() const { return driver->State(); }
   bool Await(ArmMode mode) {

@@ -5,6 +5,7 @@
 
 #include "models/base/error.h"
 #include "tests/drivers/arm_bench.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -42,7 +43,8 @@ TEST_CASE("Status, alarms, jobs and positions are read beside the motion ports",
   // Half a pulse.
   CHECK((Got(client.ReadJoints()) - bench.State().q).cwiseAbs().maxCoeff() < Radians(0.00051));
   const hses::Position flange = Got(client.ReadPosition(hses::kCartesian));
-  const Vector3 p_BF = FlangePose(Hc10(), bench.State().q).translation() - Vector3(0, 0, 0.275);
+  const Vector3 p_BF =
+      FlangePose(PaperCell().arm, bench.State().q).translation() - Vector3(0, 0, 0.275);
   for (int i = 0; i < 3; ++i) CHECK(1e-6 * flange.axes[i] == Approx(p_BF[i]).margin(2e-6));
   CHECK_THAT(Not(client.ReadPosition(77)).reason, Contains("arm supervision 127.0.0.1:"));
   CHECK(Not(client.ReadPosition(77)).added_status == hses::kNoInstance);

@@ -6,6 +6,7 @@
 #include "models/base/error.h"
 #include "tests/drivers/served.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_scale.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
@@ -13,8 +14,15 @@ namespace {
 
 using Catch::Matchers::Contains;
 
-RobotiqConfig To(ServedGripper& served) {
+/// Of the paper's gripper.
+RobotiqConfig Config() {
   RobotiqConfig config;
+  config.scale = PaperScale();
+  return config;
+}
+
+RobotiqConfig To(ServedGripper& served) {
+  RobotiqConfig config = Config();
   config.host = "127.0.0.1";
   config.port = served.port();
   config.rate = kServedRate;
@@ -41,7 +49,7 @@ struct Bench {
   TemporaryFolder folder;
   RunningClock clock{kServedRate};
   ServedGripper served;
-  RobotiqConfig config;
+  RobotiqConfig config = Config();
   std::unique_ptr<RobotiqGripper> driver;
 };
 
@@ -174,7 +182,7 @@ TEST_CASE("A closed connection is lost at once", "[unit]") {
 }
 
 TEST_CASE("A gripper that cannot be reached is named with its place", "[unit]") {
-  RobotiqConfig config;
+  RobotiqConfig config = Config();
   config.host = "127.0.0.1";
   {
     ServedGripper gone;
@@ -198,7 +206,7 @@ TEST_CASE("A gripper that cannot be reached is named with its place", "[unit]") 
 }
 
 TEST_CASE("The gripper's configuration says what is wrong with it", "[unit]") {
-  RobotiqConfig config;
+  RobotiqConfig config = Config();
   CHECK_NOTHROW(config.ValidateOrThrow());
   ConfigSource source;
   source.AddText("host = 'robot'\nport = 502\nslave = 10\ndevice = '/dev/ttyUSB0'\n", "cell.toml");

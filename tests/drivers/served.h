@@ -10,6 +10,7 @@
 #include "hw_bridge/emulators/ati/wrist_emulator.h"
 #include "hw_bridge/emulators/robotiq/gripper_emulator.h"
 #include "tests/support/moving_fingers.h"
+#include "tests/support/paper_scale.h"
 
 namespace tubetwin {
 
@@ -66,6 +67,7 @@ class ServedGripper {
  private:
   static GripperEmulatorConfig At(const std::string& device) {
     GripperEmulatorConfig config;
+    config.scale = PaperScale();
     config.port = 0;
     config.transport = device.empty() ? "tcp" : "rtu";
     config.device = device;

@@ -9,6 +9,7 @@
 #include "hw_bridge/drivers/yaskawa/yaskawa_config.h"
 #include "hw_bridge/emulators/yaskawa/arm_emulator.h"
 #include "tests/emulators/fake_servo_arm.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 
@@ -38,7 +39,7 @@ class PacedThread {
 class ServedArm {
  public:
   explicit ServedArm(double rate = 2.0, bool servo_on = true)
-      : rate_(rate), emulator_(io_, arm_, Hc10(), OnAnyPort(servo_on)) {
+      : rate_(rate), emulator_(io_, arm_, PaperCell().arm, OnAnyPort(servo_on)) {
     JointVector q;
     q << 0.1, 0.4, 1.5, 0.0, 0.25, 0.0;
     arm_.Place(q);

@@ -6,6 +6,7 @@
 
 #include "hw_bridge/emulators/yaskawa/increment_queue.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -31,7 +32,7 @@ JointTrajectory Moved(double by_rad, double duration_s) {
 /// One millisecond after another: asks, answers as the controller does, lets the queue run.
 struct Exchange {
   Exchange(const JointTrajectory& trajectory, const JointVector& q_start)
-      : motion(trajectory, q_start, Hc10(), kAhead_s), q(q_start) {}
+      : motion(trajectory, q_start, PaperCell().arm, kAhead_s), q(q_start) {}
 
   sm::MotionReply Answer(const sm::Body& request) {
     sm::MotionReply reply;
@@ -147,7 +148,7 @@ TEST_CASE("A ramp ends on the path, within half of the acceleration limits and l
   CHECK((way - way[0] * JointVector::Ones()).cwiseAbs().maxCoeff() < 1e-6);
   CHECK(exchange.motion.stream().NearestTime(exchange.q, exchange.now_s - 10.0) ==
         Approx(exchange.motion.Progress_s(exchange.now_s)).margin(0.003));
-  const double limit_rad_s2 = Hc10().joints[0].max_acceleration_rad_s2;
+  const double limit_rad_s2 = PaperCell().arm.joints[0].max_acceleration_rad_s2;
   CHECK(exchange.fastest_rad_s2 < std::max(before_rad_s2, limit_rad_s2));
 }
 

@@ -5,6 +5,7 @@
 
 #include "tests/drivers/arm_bench.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kEncoder_rad = 1e-5;
 TEST_CASE("Connecting powers the drives and starts the job that waits for motion", "[unit]") {
   ServedArm served(2.0, false);
   const WallClock clock(2.0);
-  const YaskawaArm driver(served.Config(), Hc10(), clock);
+  const YaskawaArm driver(served.Config(), PaperCell().arm, clock);
   const ArmState state = driver.State();
   CHECK(state.mode == ArmMode::kReady);
   CHECK(state.fault.empty());

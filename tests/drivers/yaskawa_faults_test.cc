@@ -5,6 +5,7 @@
 
 #include "models/base/error.h"
 #include "tests/drivers/arm_bench.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -16,7 +17,7 @@ using Script = void (*)(ArmEmulator&);
 std::string WhyNotConnected(const YaskawaConfig& config) {
   const WallClock clock(config.rate);
   try {
-    const YaskawaArm driver(config, Hc10(), clock);
+    const YaskawaArm driver(config, PaperCell().arm, clock);
   } catch (const Error& error) {
     CHECK(error.kind() == ErrorKind::kDevice);
     return error.what();
@@ -98,7 +99,7 @@ TEST_CASE("An arm that stands in a stop is told so on connecting, and not made r
   ServedArm served;
   served.With([](ArmEmulator& emulator, FakeServoArm&) { emulator.Alarm(4107, true); });
   const WallClock clock(2.0);
-  YaskawaArm driver(served.Config(), Hc10(), clock);
+  YaskawaArm driver(served.Config(), PaperCell().arm, clock);
   CHECK(driver.State().mode == ArmMode::kFault);
   CHECK_THAT(driver.State().fault, Contains("alarm"));
   served.With([](ArmEmulator& emulator, FakeServoArm&) { emulator.ClearAlarmCause(); });
@@ -235,7 +236,7 @@ TEST_CASE("Whatever cannot be connected is named with its place and what was awa
   CHECK_THAT(WhyNotConnected(config), Contains("no answer to CHECK_MOTION_READY"));
   config.rate = 0.0;
   const WallClock clock;
-  CHECK_THROWS_WITH(YaskawaArm(config, Hc10(), clock), Contains("rate is 0"));
+  CHECK_THROWS_WITH(YaskawaArm(config, PaperCell().arm, clock), Contains("rate is 0"));
 }
 
 TEST_CASE("The end of the driver is the end of the motion", "[unit]") {
@@ -251,7 +252,7 @@ TEST_CASE("The end of the driver is the end of the motion", "[unit]") {
   CHECK(bench.Stands());
   // The job has ended: nobody moves the arm without starting it again.
   CHECK(bench.served.With([](ArmEmulator& e, FakeServoArm&) { return !e.controller().running(); }));
-  bench.driver = std::make_unique<YaskawaArm>(bench.config, Hc10(), bench.clock);
+  bench.driver = std::make_unique<YaskawaArm>(bench.config, PaperCell().arm, bench.clock);
   CHECK(bench.State().mode == ArmMode::kReady);
 }
 

@@ -5,6 +5,7 @@
 #include "tests/codecs/hex.h"
 #include "tests/emulators/arm_rig.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -152,7 +153,7 @@ TEST_CASE("supervision reads alarms, positions and variables, and switches servo
   CHECK(std::abs(place.axes[2] - (677631 - 275000)) <= 1);
   const Matrix3 R = RotZ(Radians(1e-4 * place.axes[5])) * RotY(Radians(1e-4 * place.axes[4])) *
                     RotX(Radians(1e-4 * place.axes[3]));
-  CHECK((R - FlangePose(Hc10(), q).linear()).cwiseAbs().maxCoeff() < 1e-5);
+  CHECK((R - FlangePose(PaperCell().arm, q).linear()).cwiseAbs().maxCoeff() < 1e-5);
 
   CHECK(ask(hses::kStartJob, 1, 1, hses::kSetOne, hses::Word(1)).status == hses::kOk);
   CHECK((status().data1 & hses::Status::kRunning) != 0);
@@ -279,7 +280,7 @@ TEST_CASE("a taken port is an error that names it", "[unit]") {
   ArmEmulatorConfig config = ArmRig::Loopback();
   config.state_port = rig.emulator.state_port();
   FakeServoArm arm;
-  REQUIRE_THROWS_WITH(ArmEmulator(rig.io, arm, Hc10(), config),
+  REQUIRE_THROWS_WITH(ArmEmulator(rig.io, arm, PaperCell().arm, config),
                       "arm (state) cannot listen on 127.0.0.1:" +
                           std::to_string(config.state_port) + ": Address already in use");
 }

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 
@@ -15,7 +16,7 @@ ArmEmulatorConfig ArmRig::Loopback() {
   return config;
 }
 
-ArmRig::ArmRig(ArmEmulatorConfig config) : emulator(io, arm, Hc10(), config) {
+ArmRig::ArmRig(ArmEmulatorConfig config) : emulator(io, arm, PaperCell().arm, config) {
   JointVector q;
   q << 0.1, 0.4, 1.5, 0.0, 0.25, 0.0;
   arm.Place(q);

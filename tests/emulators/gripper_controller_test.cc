@@ -2,13 +2,14 @@
 
 #include "tests/support/catch.h"
 #include "tests/support/moving_fingers.h"
+#include "tests/support/paper_scale.h"
 
 namespace tubetwin {
 namespace {
 
 struct Bench {
   MovingFingers fingers;
-  GripperController controller{fingers};
+  GripperController controller{fingers, PaperScale()};
   TimeNs now{0};
 
   void Advance(double duration_s) {

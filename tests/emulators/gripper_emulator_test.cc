@@ -13,6 +13,7 @@
 #include "tests/codecs/hex.h"
 #include "tests/support/catch.h"
 #include "tests/support/moving_fingers.h"
+#include "tests/support/paper_scale.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
@@ -25,6 +26,7 @@ using Catch::Matchers::Contains;
 
 GripperEmulatorConfig OnAnyPort() {
   GripperEmulatorConfig config;
+  config.scale = PaperScale();
   config.port = 0;
   return config;
 }
@@ -161,6 +163,7 @@ TEST_CASE("A flood of idle connections does not lock the gripper up", "[unit]") 
 TEST_CASE("Modbus RTU on a pseudo-terminal gives the frames of the manual", "[unit]") {
   const TemporaryFolder folder;
   GripperEmulatorConfig config;
+  config.scale = PaperScale();
   config.transport = "rtu";
   config.device = folder / "ttyGRIPPER";
   {
@@ -239,6 +242,7 @@ TEST_CASE("Link faults do to answers what they say", "[unit]") {
 TEST_CASE("A port in use is a device that cannot be had", "[unit]") {
   Bench bench;
   GripperEmulatorConfig config;
+  config.scale = PaperScale();
   config.port = bench.emulator.port();
   try {
     const Bench second(config);

@@ -2,6 +2,7 @@
 #include "planner/pick/make_path.h"
 #include "planner/pick/pick_planner.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/support/planning.h"
 #include "tests/support/tube_scenes.h"
 
@@ -47,7 +48,7 @@ TEST_CASE("Example: a motion of one's own is asked about, chosen and can be run"
   part.length_m = 0.40;
   const Bin bin;
   const std::vector<Vector3> no_points;
-  const MotionPlanner planner(Hc10(), CellLayout(), bin);
+  const MotionPlanner planner(PaperCell(), bin);
   const PathConfig paths;
   const PlanResult result = PlanPicks({scene, no_points, part, bin, FirstGripper(), config, {kHop}},
                                       evaluate, PathFeasibility(planner, bin, paths, kRadius));

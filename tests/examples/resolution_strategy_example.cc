@@ -3,6 +3,7 @@
 #include "planner/motion/path_builder.h"
 #include "planner/resolution/strategies.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -25,11 +26,11 @@ const ResolutionStrategy kDip = {"dip", "dips twice", MakeDip};
 // [example]
 
 TEST_CASE("Example: a strategy of one's own is a path that the arm can run", "[unit]") {
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   const Bin bin;
   const ResolutionConfig config;
   const PathConfig paths;
-  const MotionPlanner planner(Hc10(), layout, bin);
+  const MotionPlanner planner(PaperCell(), bin);
   const RigidTransform X_BE = MakeTransform(RotX(kPi), Vector3(0.6, 0.0, 0.55));
   PathStart start;
   start.q = *planner.Reach(X_BE);
@@ -43,11 +44,11 @@ TEST_CASE("Example: a strategy of one's own is a path that the arm can run", "[u
 }
 
 TEST_CASE("Every strategy of the registry ends upright where it began to tilt", "[unit]") {
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   const Bin bin;
   const ResolutionConfig config;
   const PathConfig paths;
-  const MotionPlanner planner(Hc10(), layout, bin);
+  const MotionPlanner planner(PaperCell(), bin);
   const RigidTransform X_BE = MakeTransform(RotX(kPi), Vector3(0.6, 0.0, 0.55));
   PathStart start;
   start.q = *planner.Reach(X_BE);

@@ -6,6 +6,7 @@
 
 #include "hw_bridge/codecs/robotiq_registers.h"
 #include "tests/fuzz/byte_target.h"
+#include "tests/support/paper_scale.h"
 
 namespace tubetwin {
 namespace {
@@ -35,7 +36,7 @@ void TryBytes(std::string_view bytes) {
   const auto again = DecodeGripperStatus(EncodeGripperStatus(status));
   Require(std::holds_alternative<GripperStatus>(again) && std::get<GripperStatus>(again) == status,
           "another status");
-  const GripperScale scale;
+  const GripperScale scale = PaperScale();
   const double opening_m = scale.OpeningOf(status.position);
   Require(opening_m >= 0.0 && opening_m <= scale.stroke_m, "an opening that no gripper has");
 }

@@ -2,6 +2,7 @@
 
 #include "models/arm/arm.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -11,7 +12,7 @@ struct Looks {
   CycleMoments::Look At(double x, double y, double z) const {
     const RigidTransform X_NE = MakeTransform(RotX(kPi), Vector3(x, y, z));
     const RigidTransform X_BF = bin.X_BN * X_NE * layout.X_FE.inverse();
-    const auto solutions = InverseAll(Hc10(), X_BF);
+    const auto solutions = InverseAll(PaperCell().arm, X_BF);
     REQUIRE_FALSE(solutions.empty());
     CycleMoments::Look look;
     look.q = solutions.front();
@@ -19,7 +20,7 @@ struct Looks {
     return look;
   }
   Bin bin;
-  CellLayout layout;
+  const CellLayout& layout = PaperCell().layout;
 };
 
 using Names = std::vector<std::string>;
@@ -28,7 +29,7 @@ using Names = std::vector<std::string>;
 
 TEST_CASE("A pick shows its moments in order, once each", "[unit]") {
   const Looks looks;
-  CycleMoments moments(Hc10(), looks.layout, looks.bin);
+  CycleMoments moments(PaperCell(), looks.bin);
   CHECK(moments.After(looks.At(0, 0, 0.4)).empty());
   auto look = looks.At(0, 0, 0.4);
   look.scans = 2;
@@ -58,7 +59,7 @@ TEST_CASE("A pick shows its moments in order, once each", "[unit]") {
 
 TEST_CASE("What the fingers do before they are activated is no moment", "[unit]") {
   const Looks looks;
-  CycleMoments moments(Hc10(), looks.layout, looks.bin);
+  CycleMoments moments(PaperCell(), looks.bin);
   CycleMoments::Look look = looks.At(0, 0, 0.02);
   look.fingers_in_use = false;
   moments.After(look);

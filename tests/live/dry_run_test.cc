@@ -3,6 +3,7 @@
 #include "models/arm/arm.h"
 #include "tests/recording/restless_cell.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 
@@ -16,7 +17,7 @@ TEST_CASE("In a dry run trajectories pass in thought and the real devices hear n
   from.q = cell.arm.State().q;
   to.q = from.q + 0.1 * JointVector::Ones();
   to.time_s = 1.0;
-  const auto checked = CheckTrajectory(Hc10(), {{from, to}});
+  const auto checked = CheckTrajectory(PaperCell().arm, {{from, to}});
   REQUIRE(std::holds_alternative<CheckedTrajectory>(checked));
   const CheckedTrajectory& path = std::get<CheckedTrajectory>(checked);
   REQUIRE(cell.arm.Start(path).accepted());

@@ -11,6 +11,7 @@
 #include "hw_bridge/emulators/photoneo/scanner_gige_emulator.h"
 #include "models/base/error.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/live/fault_script.h"
 #include "twin/live/live_cell.h"
@@ -123,8 +124,8 @@ TEST_CASE("GigE Vision is served when it is asked for, and not otherwise", "[uni
   CHECK(chosen.drivers.Get<PhotoneoDriver>().config.path.empty());
   CHECK_NOTHROW(bench.cell->Reaching().cell.ValidateOrThrow());
   chosen.drivers.Get<PhotoneoDriver>().config.timeout_s = 25.0;
-  DriverContext context =
-      ScenarioContext(bench.scenario, Hc10(), bench.twin->cell().clock, CellPurpose::kLook, "");
+  DriverContext context = ScenarioContext(bench.scenario, PaperCell(), bench.twin->cell().clock,
+                                          CellPurpose::kLook, "");
   context.believed_X_NS = [] { return RigidTransform::Identity(); };
   const auto driver = chosen.Connect(context);
   REQUIRE(driver->Trigger().accepted());

@@ -5,6 +5,7 @@
 
 #include "models/base/random.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -35,7 +36,7 @@ bool Contains(const std::vector<JointVector>& all, const JointVector& q, double 
 JointVector RandomJoints(RandomStream& stream) {
   JointVector q;
   for (int i = 0; i < kNumJoints; ++i) {
-    q[i] = stream.Uniform(Hc10().joints[i].lower_rad, Hc10().joints[i].upper_rad);
+    q[i] = stream.Uniform(PaperCell().arm.joints[i].lower_rad, PaperCell().arm.joints[i].upper_rad);
   }
   return q;
 }
@@ -66,7 +67,7 @@ TEST_CASE("The flange stands where the vendor's joint table puts it", "[unit]") 
              -0.681236})},
       {Deg(0, 30, 120, 0, 90, 0), {0.85, 0.162, 1.011218}, rows({-1, 0, 0, 0, -1, 0, 0, 0, 1})}};
   for (const Row& row : table) {
-    const RigidTransform X_BF = FlangePose(Hc10(), row.q);
+    const RigidTransform X_BF = FlangePose(PaperCell().arm, row.q);
     CHECK((X_BF.translation() - row.p).cwiseAbs().maxCoeff() < kTablePosition_m);
     CHECK((X_BF.linear() - row.R).cwiseAbs().maxCoeff() < kTablePosition_m);
   }
@@ -94,7 +95,7 @@ TEST_CASE("Forward kinematics agrees with KDL over random joints", "[unit]") {
     joints.data = q;
     Frame frame;
     REQUIRE(solver.JntToCart(joints, frame) == 0);
-    const RigidTransform X_BF = FlangePose(Hc10(), q);
+    const RigidTransform X_BF = FlangePose(PaperCell().arm, q);
     for (int i = 0; i < 3; ++i) {
       CHECK(std::abs(X_BF.translation()[i] - frame.p(i)) < kRounding);
       for (int j = 0; j < 3; ++j) CHECK(std::abs(X_BF.linear()(i, j) - frame.M(i, j)) < kRounding);
@@ -109,11 +110,11 @@ TEST_CASE("The Jacobian is the derivative of the pose of E", "[unit]") {
   constexpr double kDifferenceError = 1e-8;  // of a central difference with that step
   for (int trial = 0; trial < 50; ++trial) {
     const JointVector q = RandomJoints(stream);
-    const JacobianMatrix J = Jacobian(Hc10(), q, X_FE);
+    const JacobianMatrix J = Jacobian(PaperCell().arm, q, X_FE);
     for (int i = 0; i < kNumJoints; ++i) {
       const JointVector dq = kStep * JointVector::Unit(i);
-      const RigidTransform X_a = FlangePose(Hc10(), q - dq) * X_FE;
-      const RigidTransform X_b = FlangePose(Hc10(), q + dq) * X_FE;
+      const RigidTransform X_a = FlangePose(PaperCell().arm, q - dq) * X_FE;
+      const RigidTransform X_b = FlangePose(PaperCell().arm, q + dq) * X_FE;
       const Vector3 v = (X_b.translation() - X_a.translation()) / (2 * kStep);
       const Matrix3 spin = (X_b.linear() - X_a.linear()) / (2 * kStep) * X_a.linear().transpose();
       const Vector3 w(spin(2, 1), spin(0, 2), spin(1, 0));
@@ -133,14 +134,14 @@ TEST_CASE("All eight solutions of a general pose are found", "[unit]") {
       Deg(-170.0722, -91.2086, 81.7738, -150.6463, -139.1601, 96.9624),
       Deg(30.9051, 91.5456, 257.5692, -140.5250, 122.7084, -99.8374),
       Deg(-149.0949, -91.5456, 102.4308, 39.4750, 122.7084, -99.8374)};
-  const auto all = InverseAll(Hc10(), FlangePose(Hc10(), expected[0]));
+  const auto all = InverseAll(PaperCell().arm, FlangePose(PaperCell().arm, expected[0]));
   CHECK(all.size() == expected.size());
   for (const JointVector& q : expected) CHECK(Contains(all, q, Radians(kTableAngle_deg)));
 }
 
 TEST_CASE("All twelve solutions of a vertical tool are found", "[unit]") {
   const RigidTransform X_BF = MakeTransform(RotX(kPi), Vector3(0.6, -0.1, 0.1));
-  const auto all = InverseAll(Hc10(), X_BF);
+  const auto all = InverseAll(PaperCell().arm, X_BF);
   CHECK(all.size() == 12);
   for (const JointVector& q : {Deg(5.9835, 49.7503, 55.7247, 180, 5.9744, 174.0165),
                                Deg(-24.9081, 49.7503, 55.7247, 0, -5.9744, 24.9081),
@@ -157,20 +158,20 @@ TEST_CASE("Every inverse solution reaches its pose and the generating joints are
   constexpr int kTrials = 2000;
   for (int trial = 0; trial < kTrials; ++trial) {
     const JointVector q = RandomJoints(stream);
-    const RigidTransform X_BF = FlangePose(Hc10(), q);
-    const auto all = InverseAll(Hc10(), X_BF);
+    const RigidTransform X_BF = FlangePose(PaperCell().arm, q);
+    const auto all = InverseAll(PaperCell().arm, X_BF);
     CHECK(all.size() <= 16);
     if (all.size() % 2 != 0) ++odd;
     for (const JointVector& other : all) {
-      const RigidTransform X = FlangePose(Hc10(), other);
+      const RigidTransform X = FlangePose(PaperCell().arm, other);
       CHECK((X.translation() - X_BF.translation()).norm() < 1e-9);
       CHECK((X.linear() - X_BF.linear()).norm() < 1e-9);
-      CHECK(other[2] >= Hc10().joints[2].lower_rad);
-      CHECK(other[2] <= Hc10().joints[2].upper_rad);
+      CHECK(other[2] >= PaperCell().arm.joints[2].lower_rad);
+      CHECK(other[2] <= PaperCell().arm.joints[2].upper_rad);
     }
     const bool hit = Contains(all, q, 1e-5);
     found += hit;
-    if (Manipulability(Hc10(), q, RigidTransform::Identity()) > 0.02) {
+    if (Manipulability(PaperCell().arm, q, RigidTransform::Identity()) > 0.02) {
       ++regular;
       regular_found += hit;
     }
@@ -185,15 +186,15 @@ TEST_CASE("The nearest inverse solution follows small moves and keeps the limits
   for (int trial = 0; trial < 300; ++trial) {
     JointVector q = 0.9 * RandomJoints(stream);
     q[2] = std::max(q[2], 0.1);
-    if (Manipulability(Hc10(), q, RigidTransform::Identity()) < 0.05) continue;
+    if (Manipulability(PaperCell().arm, q, RigidTransform::Identity()) < 0.05) continue;
     JointVector q_near = q;
     for (int i = 0; i < kNumJoints; ++i) q_near[i] += stream.Uniform(-0.01, 0.01);
-    const auto result = InverseNear(Hc10(), FlangePose(Hc10(), q), q_near);
+    const auto result = InverseNear(PaperCell().arm, FlangePose(PaperCell().arm, q), q_near);
     REQUIRE(result.status == InverseNearResult::Status::kFound);
     CHECK((result.q - q).cwiseAbs().maxCoeff() < 1e-6);
   }
   const RigidTransform far = Translation(2.0, 0.0, 0.5);
-  CHECK(InverseNear(Hc10(), far, JointVector::Zero()).status ==
+  CHECK(InverseNear(PaperCell().arm, far, JointVector::Zero()).status ==
         InverseNearResult::Status::kUnreachable);
 }
 
@@ -204,12 +205,12 @@ TEST_CASE("The working family is front, elbow up, with joint 4 at zero for a ver
       for (double yaw_deg : {-120.0, 0.0, 75.0}) {
         const RigidTransform X_BF =
             MakeTransform(RotX(kPi) * RotZ(Radians(yaw_deg)), Vector3(x, y, 0.30));
-        const auto result = InverseWorking(Hc10(), X_BF);
+        const auto result = InverseWorking(PaperCell().arm, X_BF);
         REQUIRE(result.status == InverseNearResult::Status::kFound);
         CHECK(std::abs(result.q[3]) < 1e-6);
         CHECK(result.q[2] > 0);
         CHECK(result.q[2] < kPi);
-        const RigidTransform X = FlangePose(Hc10(), result.q);
+        const RigidTransform X = FlangePose(PaperCell().arm, result.q);
         CHECK((X.translation() - X_BF.translation()).norm() < 1e-9);
       }
     }
@@ -218,7 +219,7 @@ TEST_CASE("The working family is front, elbow up, with joint 4 at zero for a ver
 
 TEST_CASE("The arm's masses add up to the catalogue's and every inertia is physical", "[unit]") {
   double sum = 0;
-  for (const auto& link : Hc10().links) {
+  for (const auto& link : PaperCell().arm.links) {
     sum += link.mass_kg;
     const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(link.inertia_kgm2);
     const Vector3 moments = eigen.eigenvalues();

@@ -3,6 +3,7 @@
 #include "models/base/random.h"
 #include "models/gripper_spec.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -12,13 +13,13 @@ constexpr double kOpen_m = 0.085;
 
 JointVector JointsAt(const Vector3& p_BE, double yaw_rad) {
   const RigidTransform X_BE = MakeTransform(RotX(kPi) * RotZ(yaw_rad), p_BE);
-  const auto result = InverseWorking(Hc10(), X_BE * CellLayout().X_FE.inverse());
+  const auto result = InverseWorking(PaperCell().arm, X_BE * PaperCell().layout.X_FE.inverse());
   REQUIRE(result.status == InverseNearResult::Status::kFound);
   return result.q;
 }
 
 const ClearanceChecker& Checker() {
-  static const ClearanceChecker checker(Hc10(), CellLayout(), Bin());
+  static const ClearanceChecker checker(PaperCell(), Bin());
   return checker;
 }
 
@@ -29,8 +30,8 @@ double BoxDistance(const Vector3& p, const Vector3& half_m) {
 }
 
 /// Points on a shape's surface, about 6 mm apart, in its own frame.
-std::vector<Vector3> SurfacePoints(const ClearanceChecker::Shape& shape) {
-  using Kind = ClearanceChecker::Shape::Kind;
+std::vector<Vector3> SurfacePoints(const Shape& shape) {
+  using Kind = Shape::Kind;
   std::vector<Vector3> points;
   const Vector3& s = shape.size_m;
   const auto span = [](double half) { return std::max(2, static_cast<int>(half / 0.003)); };
@@ -73,11 +74,12 @@ std::vector<Vector3> SurfacePoints(const ClearanceChecker::Shape& shape) {
 }
 
 TEST_CASE("Over the middle of the floor the fingers are the pads' lower edge away", "[unit]") {
-  const GripperSpec gripper;
+  const GripperSpec& gripper = PaperCell().gripper;
   for (const double opening : {0.0, 0.030, 0.085}) {
     for (const double height : {0.0215, 0.030, 0.045}) {
       // E is the pads' centre of closed fingers; open ones are drawn back.
-      const double expected = height - 0.5 * gripper.pad_height_m + PadRetreat(opening);
+      const double expected =
+          height - 0.5 * gripper.pad_height_m + PadRetreat(PaperCell().gripper, opening);
       const JointVector q = JointsAt(Vector3(0.6, 0, 0.10 + height), kPi / 2);
       const auto result = Checker().Check(q, opening, 0.10);
       CHECK(std::abs(result.fingers.clearance_m - expected) < kSolver_m);
@@ -93,7 +95,7 @@ TEST_CASE("A finger beside a wall is as far from it as the geometry says", "[uni
   // Closing direction along B's x: y of E is along B's x for a yaw of 90 degrees.
   const double opening = 0.030, height = 0.060;
   for (const double gap : {0.012, 0.004}) {
-    const double reach = 0.5 * opening + GripperSpec().finger_thickness_m;
+    const double reach = 0.5 * opening + PaperCell().gripper.finger_thickness_m;
     const Vector3 p_BE(0.60 + 0.29 - reach - gap, 0.0, 0.10 + height);
     const auto result = Checker().Check(JointsAt(p_BE, kPi / 2), opening);
     CHECK(std::abs(result.fingers.clearance_m - gap) < kSolver_m);
@@ -105,8 +107,8 @@ TEST_CASE("A finger beside a wall is as far from it as the geometry says", "[uni
 }
 
 TEST_CASE("Every scan pose is free and lies between the forearm and the bin", "[unit]") {
-  for (const auto& X_BS : DefaultScanPoses(Bin())) {
-    const auto ik = InverseWorking(Hc10(), X_BS * CellLayout().X_FS.inverse());
+  for (const auto& X_BS : ScanPosesOf(PaperCell(), Bin())) {
+    const auto ik = InverseWorking(PaperCell().arm, X_BS * PaperCell().layout.X_FS.inverse());
     REQUIRE(ik.status == InverseNearResult::Status::kFound);
     // What comes nearest is the upper end of the housing to the forearm.
     const auto result = Checker().Check(ik.q, kOpen_m);
@@ -129,7 +131,7 @@ TEST_CASE("Clearance to bin, tray and plate agrees with densely sampled surfaces
     RigidTransform X_BBox;
     Vector3 half_m;
   };
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   const Bin bin;
   const double x = bin.half_x_m(), y = bin.half_y_m(), t = Bin::kWallThickness_m, h = 0.045;
   const RigidTransform& X_BN = bin.X_BN;
@@ -141,7 +143,7 @@ TEST_CASE("Clearance to bin, tray and plate agrees with densely sampled surfaces
       {X_BN * Translation(0, -y - t / 2, h), {x + t, t / 2, h}},
       {layout.X_BT * Translation(0, 0, -0.05), {0.3, 0.3, 0.05}},
       {Translation(0, 0, -0.05), {2, 2, 0.05}}};
-  const auto shapes = ClearanceChecker::ArmShapes(Hc10(), layout);
+  const auto shapes = MovingShapes(PaperCell());
   RandomStream stream(5, 0, "clearance");
   constexpr double kSampling_m = 0.0045;  // half the diagonal of the points' grid
   constexpr double kNear_m = 0.10;
@@ -150,11 +152,12 @@ TEST_CASE("Clearance to bin, tray and plate agrees with densely sampled surfaces
     const Vector3 p_BE(stream.Uniform(0.40, 0.86), stream.Uniform(-0.36, 0.36),
                        0.10 + stream.Uniform(0.02, 0.12));
     const JointVector q = JointsAt(p_BE, stream.Uniform(-1.5, 1.5));
-    const auto X_BL = LinkPoses(Hc10(), q);
+    const auto X_BL = LinkPoses(PaperCell().arm, q);
     double sampled = 1.0;
     for (const auto& shape : shapes) {
       if (shape.link < 2) continue;
-      const RigidTransform X_BBody = shape.link == 7 ? X_BL[6] * Hc10().X_6F : X_BL[shape.link];
+      const RigidTransform X_BBody =
+          shape.link == 7 ? X_BL[6] * PaperCell().arm.X_6F : X_BL[shape.link];
       for (const Vector3& p : SurfacePoints(shape)) {
         const Vector3 p_B = X_BBody * shape.X_LinkShape * p;
         for (const Obstacle& o : obstacles) {
@@ -178,7 +181,7 @@ TEST_CASE("Clearance to bin, tray and plate agrees with densely sampled surfaces
 }
 
 TEST_CASE("Shapes carry distinct names and stay near the vendor's mesh boxes", "[unit]") {
-  const auto shapes = ClearanceChecker::ArmShapes(Hc10(), CellLayout());
+  const auto shapes = MovingShapes(PaperCell());
   std::vector<std::string> names;
   for (const auto& shape : shapes) names.push_back(shape.name);
   std::sort(names.begin(), names.end());

@@ -1,17 +1,18 @@
 #include "models/scanner_spec.h"
 
 #include "models/arm/arm.h"
+#include "models/cell_model.h"
 #include "models/clearance.h"
-#include "models/layout.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
 
 constexpr double kRounding = 1e-12;
 
-ClearanceChecker::Shape Housing() {
-  for (const auto& shape : ClearanceChecker::ArmShapes(Hc10(), CellLayout())) {
+Shape Housing() {
+  for (const auto& shape : MovingShapes(PaperCell())) {
     if (shape.name == "scanner") return shape;
   }
   FAIL("the arm carries no scanner");
@@ -20,11 +21,11 @@ ClearanceChecker::Shape Housing() {
 
 TEST_CASE("Camera and projector look out of the front of the housing that is drawn and checked",
           "[unit]") {
-  const ScannerSpec spec;
+  const ScannerSpec& spec = PaperCell().scanner;
   const auto housing = Housing();
   CHECK(2 * housing.size_m.x() == Approx(spec.housing_x_m));
   for (const RigidTransform& X_SAperture : {RigidTransform::Identity(), ProjectorPose(spec)}) {
-    const RigidTransform X_FAperture = CellLayout().X_FS * X_SAperture;
+    const RigidTransform X_FAperture = PaperCell().layout.X_FS * X_SAperture;
     const RigidTransform X_HousingAperture = housing.X_LinkShape.inverse() * X_FAperture;
     const Vector3 p = X_HousingAperture.translation();
     CHECK(std::abs(p.z() - housing.size_m.z()) < kRounding);
@@ -36,7 +37,7 @@ TEST_CASE("Camera and projector look out of the front of the housing that is dra
 }
 
 TEST_CASE("The optical axes cross at the sweet spot, the baseline is the data sheet's", "[unit]") {
-  const ScannerSpec spec;
+  const ScannerSpec& spec = PaperCell().scanner;
   const RigidTransform X_SP = ProjectorPose(spec);
   CHECK(X_SP.translation().norm() == Approx(0.235));
   // The projector's axis meets the camera's, x = y = 0 of S.
@@ -54,7 +55,7 @@ TEST_CASE("The optical axes cross at the sweet spot, the baseline is the data sh
 TEST_CASE("With the pads at the floor the housing passes over the walls of the paper's bin",
           "[unit]") {
   const auto housing = Housing();
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   double lowest_m = 0;  // Beyond the flange.
   for (int k = 0; k < 8; ++k) {
     const Vector3 corner =

@@ -2,6 +2,7 @@
 
 #include "planner/motion/time_law.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -11,7 +12,7 @@ using Why = MotionRejection::Why;
 constexpr double kLine_m = 0.00005;    // a line is followed between samples that well
 constexpr double kDifferences = 1.02;  // limits measured by differences of a 10 ms cubic
 const MotionPlanner& Planner() {
-  static const MotionPlanner planner(Hc10(), CellLayout(), Bin());
+  static const MotionPlanner planner(PaperCell(), Bin());
   return planner;
 }
 
@@ -47,7 +48,7 @@ void CheckLimits(const CheckedTrajectory& trajectory) {
     const JointVector a = (q[i] - 2 * q[i - 1] + q[i - 2]) / (kStep_s * kStep_s);
     const JointVector j = (q[i] - 3 * q[i - 1] + 3 * q[i - 2] - q[i - 3]) / std::pow(kStep_s, 3);
     for (int k = 0; k < kNumJoints; ++k) {
-      const ArmModel::Joint& limits = Hc10().joints[k];
+      const ArmModel::Joint& limits = PaperCell().arm.joints[k];
       CHECK(std::abs(v[k]) < kDifferences * limits.max_speed_rad_s);
       CHECK(std::abs(a[k]) < kDifferences * limits.max_acceleration_rad_s2);
       CHECK(std::abs(j[k]) < kDifferences * limits.max_jerk_rad_s3);
@@ -153,7 +154,7 @@ TEST_CASE("A motion that asks too much of the joints is slowed, not refused", "[
   double use = 0;
   for (const auto& p : line.trajectory().points) {
     for (int k = 0; k < kNumJoints; ++k) {
-      const auto& limits = Hc10().joints[k];
+      const auto& limits = PaperCell().arm.joints[k];
       use = std::max(use, std::abs(p.qd[k]) / limits.max_speed_rad_s / fast.joint_speed_share);
       use = std::max(
           use, std::abs(p.qdd[k]) / limits.max_acceleration_rad_s2 / fast.joint_acceleration_share);
@@ -235,7 +236,7 @@ TEST_CASE("A turn beyond joint 6's range names the joint, and either yaw avoids 
 
 TEST_CASE("At the tilt station E stands still through 45 degrees about any horizontal axis",
           "[unit]") {
-  const Vector3 p_BTilt = CellLayout().p_BTilt;
+  const Vector3 p_BTilt = PaperCell().layout.p_BTilt;
   const RigidTransform X_BE = MakeTransform(RotX(kPi), p_BTilt);
   for (int k = 0; k < 8; ++k) {
     const double angle = k * kPi / 4;
@@ -274,7 +275,7 @@ TEST_CASE("A polyline stops at each corner and passes through it", "[unit]") {
 }
 
 TEST_CASE("Transfers join every part of the bin with every corner of the tray", "[unit]") {
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   MotionOptions options;
   options.opening_m = 0.025;
   double longest_s = 0;
@@ -305,7 +306,7 @@ TEST_CASE("Transfers join every part of the bin with every corner of the tray", 
 TEST_CASE("Every scan pose is reached from the one before by a straight line", "[unit]") {
   JointVector q;
   bool first = true;
-  for (const auto& X_BS : DefaultScanPoses(Bin())) {
+  for (const auto& X_BS : ScanPosesOf(PaperCell(), Bin())) {
     const RigidTransform X_BE = Planner().PoseOfEForScan(X_BS);
     if (first) {
       q = At(X_BE);
@@ -314,7 +315,7 @@ TEST_CASE("Every scan pose is reached from the one before by a straight line", "
     }
     first = false;
     const RigidTransform X_BS_reached =
-        Planner().PoseOfE(q) * CellLayout().X_FE.inverse() * CellLayout().X_FS;
+        Planner().PoseOfE(q) * PaperCell().layout.X_FE.inverse() * PaperCell().layout.X_FS;
     CHECK((X_BS_reached.translation() - X_BS.translation()).norm() < 1e-8);
   }
 }

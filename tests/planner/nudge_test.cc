@@ -8,6 +8,7 @@
 #include "planner/grasp/gripper_boxes.h"
 #include "planner/pick/make_path.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/support/planning.h"
 #include "tests/support/tube_scenes.h"
 
@@ -68,7 +69,7 @@ TEST_CASE("A straight tube at a wall is rolled inward as far as a finger needs b
     CHECK(nudge.travel_m == Approx(0.005 * std::ceil((0.0195 - gap) / 0.005) + 0.008));
     CHECK(FingerTravel(nudge) == Approx(2.0 * nudge.travel_m));
     // The fingers' lower edge ends 4 mm below the crown.
-    const double z = 2 * kRadius - 0.004 + 0.5 * GripperSpec().pad_height_m;
+    const double z = 2 * kRadius - 0.004 + 0.5 * PaperCell().gripper.pad_height_m;
     for (const NudgeStroke& stroke : nudge.strokes) {
       CHECK(stroke.X_NE.translation().z() == Approx(z));
       CHECK(stroke.X_NE.linear().col(2).isApprox(-Vector3::UnitZ()));
@@ -172,7 +173,7 @@ TEST_CASE("Fingers keep off walls and other tubes on every nudge, and the tube e
       for (int k = 0; k <= 20; ++k) {
         const RigidTransform X_NE = Translation(stroke.travel_N * k / 20) * stroke.X_NE;
         const GripperBoxes boxes = MakeGripperBoxes(FirstGripper(), 0.0, kRadius, 0.0);
-        for (const OrientedBox& box : {boxes.fingers, boxes.chassis, boxes.base}) {
+        for (const auto& [name, box] : Parts(boxes)) {
           const OrientedBox box_N = Moved(X_NE, box);
           CHECK(WallClearance(box_N, Bin{}, 0.01) >= kLeast_m - 1e-9);
           for (std::size_t i = 1; i < scene.tubes.size(); ++i) {
@@ -191,8 +192,7 @@ TEST_CASE("Fingers keep off walls and other tubes on every nudge, and the tube e
 }
 
 TEST_CASE("The arm can nudge a tube at every wall of the default bin", "[unit]") {
-  const CellLayout layout;
-  const MotionPlanner motion(Hc10(), layout, Bin{});
+  const MotionPlanner motion(PaperCell(), Bin{});
   const Bin bin;
   const PathConfig paths;
   const NudgeConfig nudging;

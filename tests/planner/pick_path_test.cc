@@ -10,6 +10,7 @@
 #include "planner/pick/tool_path.h"
 #include "tests/support/catch.h"
 #include "tests/support/fake_cell.h"
+#include "tests/support/paper_cell.h"
 #include "tests/support/planning.h"
 #include "tests/support/tube_scenes.h"
 
@@ -20,7 +21,7 @@ constexpr double kRadius = 0.0125;
 constexpr double kSame_m = 1e-6, kSame_rad = 1e-6;  // Rounding of the inverse kinematics.
 
 const MotionPlanner& Planner() {
-  static const MotionPlanner planner(Hc10(), CellLayout(), Bin());
+  static const MotionPlanner planner(PaperCell(), Bin());
   return planner;
 }
 
@@ -50,7 +51,7 @@ PathStart AtView() {
 PickPath PathOf(const Grasp& grasp, const CandidateMotion& motion, const PathConfig& config = {},
                 double radius_m = kRadius) {
   const Bin bin;
-  return MakePickPath(grasp, motion, {bin, config, radius_m, 0.0});
+  return MakePickPath(grasp, motion, {PaperCell().gripper, bin, config, radius_m, 0.0});
 }
 
 CheckedPath Checked(const PickPath& path, const PathStart& start) {
@@ -101,8 +102,8 @@ struct Rig {
   }
   test::FakeCell fake;
   RecordingArm arm{fake.arm};
-  Cell cell{fake.clock, arm,          fake.gripper, fake.wrist,      fake.scanner,
-            Hc10(),     CellLayout(), Bin(),        fake.cell.safety};
+  Cell cell{fake.clock,   arm,         fake.gripper, fake.wrist,
+            fake.scanner, PaperCell(), Bin(),        fake.cell.safety};
   std::optional<PathExecutor> executor;
 };
 
@@ -132,9 +133,10 @@ TEST_CASE("The pads' centre is at the grasp when the fingers have closed, whatev
   const CheckedPath path = Checked(PathOf(grasp, SlideAndLift(0.0), {}, radius_m), AtView());
   const RigidTransform X_BE = EndOfStage(path, kDescendStage);
   // The pads of a hand that holds something thick are that much behind E.
-  const RigidTransform X_BPads = X_BE * Translation(0, 0, -PadRetreat(2.0 * radius_m));
+  const RigidTransform X_BPads =
+      X_BE * Translation(0, 0, -PadRetreat(PaperCell().gripper, 2.0 * radius_m));
   CHECK(SamePose(X_BPads, Bin().X_BN * grasp.X_NG));
-  CHECK(SamePose(X_BE, ToolPoseAtGrasp(grasp, radius_m, Bin())));
+  CHECK(SamePose(X_BE, ToolPoseAtGrasp(grasp, radius_m, PaperCell().gripper, Bin())));
 }
 
 TEST_CASE("The approach that is checked is the one that is configured", "[unit]") {
@@ -166,7 +168,8 @@ TEST_CASE("The two parts of a motion, run one after the other, end where the who
     if (RefusalOf(check) != nullptr) continue;
     ++checked;
     const auto& path = std::get<CheckedPath>(check);
-    const RigidTransform X_NE = X_BN.inverse() * ToolPoseAtGrasp(grasp, kRadius, Bin());
+    const RigidTransform X_NE =
+        X_BN.inverse() * ToolPoseAtGrasp(grasp, kRadius, PaperCell().gripper, Bin());
     const int last = path.num_stages() - 1;
     CHECK(SamePose(EndOfStage(path, last), X_BN * ToolPath(motion, X_NE).back()));
   }

@@ -2,6 +2,7 @@
 
 #include "models/base/random.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 namespace {
@@ -26,7 +27,7 @@ TEST_CASE("A U is directed along the chord of its ends", "[unit]") {
 }
 
 TEST_CASE("A laid tube lies in its slot, along the tray, on the surface", "[unit]") {
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   const double radius_m = 0.0125;
   RandomStream stream(7, 0, "placement");
   for (int trial = 0; trial < 100; ++trial) {
@@ -48,7 +49,7 @@ TEST_CASE("A laid tube lies in its slot, along the tray, on the surface", "[unit
 }
 
 TEST_CASE("Slots are 55 mm apart; short parts get two rows", "[unit]") {
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   const std::vector<Vector3> one = Slots(layout, 0.5), two = Slots(layout, 0.25);
   REQUIRE(one.size() == 8);
   CHECK(one[1].x() - one[0].x() == Approx(layout.slot_pitch_m));
@@ -59,7 +60,7 @@ TEST_CASE("Slots are 55 mm apart; short parts get two rows", "[unit]") {
 
 TEST_CASE("Straight tubes are laid side by side without touching until the tray is full",
           "[unit]") {
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   const double radius_m = 0.0125;
   const Polyline line_E = {Vector3(-0.24, 0, 0), Vector3(0.24, 0, 0)};
   std::vector<Polyline> placed;
@@ -76,7 +77,7 @@ TEST_CASE("Straight tubes are laid side by side without touching until the tray 
 }
 
 TEST_CASE("A slot out of the arm's reach is not offered", "[unit]") {
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   const Polyline line_E = {Vector3(-0.24, 0, 0), Vector3(0.24, 0, 0)};
   const double middle_x = layout.X_BT.translation().x();
   const auto right_half = [&](const RigidTransform& X_BE) {

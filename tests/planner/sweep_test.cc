@@ -1,6 +1,7 @@
 #include "planner/scene_query/sweep.h"
 
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
@@ -87,9 +88,11 @@ TEST_CASE("Fingers touch what lies beside the tube that they hold unless they on
   const Vector3 held(0, 0, 0.0125);
   const TubePath aside = Motion(1, {{0, 0, 0}, {0, 0.03, 0}});
   CHECK_FALSE(FirstTouched(scene, aside).has_value());
-  CHECK(FirstTouchedByFingers(scene, aside, held) == 2);
-  CHECK_FALSE(FirstTouchedByFingers(scene, Motion(1, {{0, 0, 0}, {0, -0.03, 0}}), held));
-  CHECK_FALSE(FirstTouchedByFingers(scene, Motion(1, {{0, 0, 0}, {0, 0, 0.4}}), held));
+  CHECK(FirstTouchedByFingers(scene, aside, held, PaperCell().gripper) == 2);
+  CHECK_FALSE(FirstTouchedByFingers(scene, Motion(1, {{0, 0, 0}, {0, -0.03, 0}}), held,
+                                    PaperCell().gripper));
+  CHECK_FALSE(
+      FirstTouchedByFingers(scene, Motion(1, {{0, 0, 0}, {0, 0, 0.4}}), held, PaperCell().gripper));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "tests/recording/random_events.h"
 #include "tests/recording/restless_cell.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
@@ -21,6 +22,7 @@ CellRecordingHeader Header() {
   CellRecordingHeader header;
   header.versions = {{"program", "1.2.3"}};
   header.seed = 17;
+  header.model = PaperCell();
   header.config_toml = "seed = 17\nprofile = \"best\"\n";
   header.fingerprint = Fingerprint(header.config_toml);
   header.part = LoadPart("hose_b");
@@ -61,7 +63,7 @@ TEST_CASE("A file gives back what was added, in order, with header and end", "[u
   RandomStream stream(9, 0, "file");
   std::vector<std::string> added;
   CellRecordingHeader header = Header();
-  header.layout.X_FS = MakeTransform(RotX(0.3) * RotZ(1.1), Vector3(0.1, 0.2, 1.0 / 3.0));
+  header.model.layout.X_FS = MakeTransform(RotX(0.3) * RotZ(1.1), Vector3(0.1, 0.2, 1.0 / 3.0));
   header.bin.X_BN = MakeTransform(RotY(0.01), Vector3(0.6, 0.0, 0.1));
   header.held = "{\"attempt\":2}";
   {
@@ -90,7 +92,7 @@ TEST_CASE("A file gives back what was added, in order, with header and end", "[u
   CHECK(back.held == header.held);
   CHECK(back.part.name == "hose_b");
   CHECK(back.part.links == header.part.links);
-  CHECK(back.layout.X_FS.matrix() == header.layout.X_FS.matrix());
+  CHECK(back.model.layout.X_FS.matrix() == header.model.layout.X_FS.matrix());
   CHECK(back.bin.X_BN.matrix() == header.bin.X_BN.matrix());
   CHECK(EventsOf(recording) == added);
 }

@@ -7,6 +7,7 @@
 #include "tests/recording/random_events.h"
 #include "tests/recording/restless_cell.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
@@ -18,7 +19,7 @@ CheckedTrajectory Move(double by_rad) {
   TrajectoryPoint from, to;
   to.q = by_rad * JointVector::Ones();
   to.time_s = 1.0;
-  return std::get<CheckedTrajectory>(CheckTrajectory(Hc10(), {{from, to}}));
+  return std::get<CheckedTrajectory>(CheckTrajectory(PaperCell().arm, {{from, to}}));
 }
 
 /// An exercised cell's recording and what was heard of it.

@@ -8,6 +8,7 @@
 #include "models/base/text.h"
 #include "tests/recording/random_events.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -132,7 +133,7 @@ CheckedTrajectory Move(double by_rad) {
   from.q = kHome;
   to.q = kHome + by_rad * JointVector::Ones();
   to.time_s = 0.4;
-  const auto checked = CheckTrajectory(Hc10(), {{from, to}});
+  const auto checked = CheckTrajectory(PaperCell().arm, {{from, to}});
   REQUIRE(std::holds_alternative<CheckedTrajectory>(checked));
   return std::get<CheckedTrajectory>(checked);
 }
@@ -170,7 +171,7 @@ struct RestlessCell::Impl {
         gripper(clock, stream.Fork("gripper")),
         wrist(clock, stream.Fork("wrist")),
         scanner(stream.Fork("scanner"), width, height),
-        cell{clock, arm, gripper, wrist, scanner, Hc10(), {}, {}, {}} {}
+        cell{clock, arm, gripper, wrist, scanner, PaperCell(), {}, {}} {}
   Clock clock;
   RestlessArm arm;
   RestlessGripper gripper;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "models/base/cloud/cloud.h"
+#include "tests/support/paper_scan.h"
 #include "twin/render/scan/scan_geometry.h"
 
 namespace tubetwin::test {
@@ -46,7 +47,7 @@ inline OrganizedCloud Cast(const ScanGeometry& geometry, const ScanSettings& set
 }
 
 inline ScanSettings Exact() {
-  ScanSettings settings;
+  ScanSettings settings = PaperScan();
   settings.effects = ScannerEffects::Exact();
   settings.labels = true;
   return settings;

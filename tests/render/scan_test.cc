@@ -5,6 +5,8 @@
 #include "models/base/polyline.h"
 #include "tests/render/scan_fixture.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
+#include "tests/support/paper_scan.h"
 
 namespace tubetwin::test {
 namespace {
@@ -72,7 +74,7 @@ TEST_CASE("A tube's shadow lies on the plate exactly where the projector's tange
   geometry.boxes.push_back(Plate(0.44));
   geometry.capsules.push_back(TubeAlongY(0.0, 0.40));
   const OrganizedCloud cloud = Cast(geometry, Exact());
-  const Vector3 p_SP = ProjectorPose(ScannerSpec()).translation();
+  const Vector3 p_SP = ProjectorPose(PaperCell().scanner).translation();
   CHECK(p_SP.x() > 0.2);
   // In the plane y = 0: tangents from the projector and from the camera to the tube's circle.
   auto interval = [&](double from_x, double from_z) {
@@ -115,7 +117,7 @@ TEST_CASE("Intensity is albedo times the cosine towards the projector", "[render
   ScanGeometry geometry;
   geometry.boxes.push_back(Plate(0.442));
   const OrganizedCloud cloud = Cast(geometry, Exact());
-  const Vector3 p_SP = ProjectorPose(ScannerSpec()).translation();
+  const Vector3 p_SP = ProjectorPose(PaperCell().scanner).translation();
   for (const std::size_t i : {386u * 1032u + 516u, 300u * 1032u + 200u}) {
     const Vector3 to_projector = p_SP - cloud.p_SP[i].cast<double>();
     CHECK(cloud.intensity[i] == Approx(0.6 * -to_projector.normalized().z()).epsilon(1e-4));
@@ -127,7 +129,7 @@ TEST_CASE("A scan is the same to the byte for one thread and two, and for labels
   ScanGeometry geometry;
   geometry.boxes.push_back(Plate(0.48));
   for (int k = 0; k < 5; ++k) geometry.capsules.push_back(TubeAlongY(0.04 * k - 0.08, 0.44));
-  ScanSettings settings;
+  ScanSettings settings = PaperScan();
   settings.width = 517;  // No multiple of a packet.
   settings.height = 387;
   const OrganizedCloud a = Cast(geometry, settings, 1);
@@ -168,7 +170,7 @@ TEST_CASE("A full-resolution scan with every effect sees most of a full bin", "[
       p = q;
     }
   }
-  ScanSettings settings;
+  ScanSettings settings = PaperScan();
   settings.width = 2064;
   settings.height = 1544;
   settings.labels = true;

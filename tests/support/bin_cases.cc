@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "models/base/error.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 #include "models/physics.h"
 #include "scenes/pile.h"
+#include "tests/support/paper_cell.h"
+#include "tests/support/paper_scan.h"
 
 namespace tubetwin {
 namespace {
@@ -208,13 +210,13 @@ BinCase DrawBinCase(BinCase::Kind kind, std::uint64_t seed) {
 }
 
 std::vector<OrganizedCloud> ScanBinCase(const BinCase& c, int width, Parallelism parallelism) {
-  ScanSettings settings;
+  ScanSettings settings = PaperScan();
   settings.width = width;
   settings.height = width * settings.spec.full_height / settings.spec.full_width;
   settings.noise_scale = c.noise_scale;
   const ScanGeometry geometry = GeometryOf(c);
   std::vector<OrganizedCloud> out;
-  for (const RigidTransform& X_BS : DefaultScanPoses(c.bin)) {
+  for (const RigidTransform& X_BS : ScanPosesOf(PaperCell(), c.bin)) {
     out.push_back(CastScan(geometry, X_BS * c.X_SbelievedS, settings,
                            RandomStream(c.seed, out.size(), "bin case scan"), parallelism));
     out.back().X_NS = c.bin.X_BN.inverse() * X_BS;

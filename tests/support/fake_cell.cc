@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 
 FakeCell::FakeCell()
-    : cell{clock,     arm,          gripper, wrist,          scanner,
-           arm_model, CellLayout(), Bin(),   SafetyLimits(), false} {
+    : cell{clock, arm, gripper, wrist, scanner, model, Bin(), SafetyLimits(), false} {
   arm.q << 0, 0.3, 1.5, 0, -1.2, 0;
 }
 
@@ -107,7 +107,7 @@ CheckedTrajectory FakeCell::Move(double angle_rad, double duration_s) const {
   trajectory.points[0].q = arm.State().q;
   trajectory.points[1].q = arm.State().q + angle_rad * JointVector::Ones();
   trajectory.points[1].time_s = duration_s;
-  const auto checked = CheckTrajectory(arm_model, trajectory);
+  const auto checked = CheckTrajectory(model.arm, trajectory);
   if (const auto* rejected = std::get_if<TrajectoryRejection>(&checked)) FAIL(rejected->reason);
   return std::get<CheckedTrajectory>(checked);
 }

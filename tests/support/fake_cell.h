@@ -4,6 +4,7 @@
 #include <string>
 
 #include "hw_bridge/cell/cell.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 
@@ -103,7 +104,7 @@ class FakeCell {
   };
 
   /// May be narrowed by a test: what the planner then refuses is refused for a real reason.
-  ArmModel arm_model = Hc10();
+  CellModel model = PaperCell();
   Clock clock;
   FakeArm arm{clock};
   FakeGripper gripper{clock};

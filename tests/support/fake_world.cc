@@ -8,6 +8,7 @@
 
 #include "models/gripper_spec.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
@@ -89,8 +90,8 @@ FakeWorld::FakeWorld(const std::vector<Polyline>& tubes_N, const Bin& bin, const
     tubes.push_back({FakeTube::Place::kBin, line_N, {}});
   }
   const RigidTransform X_BE =
-      bin.X_BN * MakeTransform(RotX(kPi), Vector3(0, 0, cell.layout.carry_height_m));
-  const auto start = InverseWorking(arm_model, X_BE * cell.layout.X_FE.inverse());
+      bin.X_BN * MakeTransform(RotX(kPi), Vector3(0, 0, model.layout.carry_height_m));
+  const auto start = InverseWorking(model.arm, X_BE * model.layout.X_FE.inverse());
   REQUIRE(start.status == InverseNearResult::Status::kFound);
   arm.q = start.q;
   clock.each_period = [this] { Pass(); };
@@ -130,7 +131,7 @@ int FakeWorld::CountMotions(MotionKind kind) const {
 }
 
 RigidTransform FakeWorld::PoseOfE(const JointVector& q) const {
-  return FlangePose(arm_model, q) * cell.layout.X_FE;
+  return FlangePose(model.arm, q) * model.layout.X_FE;
 }
 
 FakeWorld::Region FakeWorld::RegionOf(const RigidTransform& X_BE) const {
@@ -138,8 +139,8 @@ FakeWorld::Region FakeWorld::RegionOf(const RigidTransform& X_BE) const {
   if (std::abs(p_NE.x()) < cell.bin.half_x_m() && std::abs(p_NE.y()) < cell.bin.half_y_m()) {
     return Region::kBin;
   }
-  const Vector3 p_TE = cell.layout.X_BT.inverse() * X_BE.translation();
-  const double half_m = 0.5 * cell.layout.tray_size_m;
+  const Vector3 p_TE = model.layout.X_BT.inverse() * X_BE.translation();
+  const double half_m = 0.5 * model.layout.tray_size_m;
   return p_TE.head<2>().cwiseAbs().maxCoeff() < half_m ? Region::kTray : Region::kElsewhere;
 }
 
@@ -249,7 +250,7 @@ void FakeWorld::Close() {
 void FakeWorld::Open() {
   const RigidTransform X_BE_now = X_BE();
   const Region region = RegionOf(X_BE_now);
-  const double over_tray_m = (cell.layout.X_BT.inverse() * X_BE_now.translation()).z();
+  const double over_tray_m = (model.layout.X_BT.inverse() * X_BE_now.translation()).z();
   const auto fault = [&](const std::string& what) {
     faults.push_back("the fingers let a tube go " + what);
   };
@@ -262,7 +263,7 @@ void FakeWorld::Open() {
     tubes[i].place = region == Region::kBin    ? FakeTube::Place::kBin
                      : region == Region::kTray ? FakeTube::Place::kTray
                                                : FakeTube::Place::kLost;
-    tubes[i].line_T = Transformed(cell.layout.X_BT.inverse() * X_BE_now, tubes[i].line_E);
+    tubes[i].line_T = Transformed(model.layout.X_BT.inverse() * X_BE_now, tubes[i].line_E);
   }
   held_.clear();
 }
@@ -285,7 +286,7 @@ void FakeWorld::ShowFingers() {
 FakeTube* FakeWorld::Pressed() {
   if (!held_.empty() || gripper.state.opening_m > kNothing_m) return nullptr;
   Vector3 tip_N = X_NE().translation();
-  tip_N.z() -= 0.5 * GripperSpec().pad_height_m;
+  tip_N.z() -= 0.5 * PaperCell().gripper.pad_height_m;
   for (FakeTube& tube : tubes) {
     if (tube.place != FakeTube::Place::kBin) continue;
     const Vector3 axis_N = Closest(tube.line_N, tip_N).point;
@@ -312,9 +313,9 @@ void FakeWorld::Roll(const Vector3& from_B, const Vector3& to_B) {
 }
 
 Vector3 FakeWorld::HeldTorque_K() const {
-  const RigidTransform X_BF = FlangePose(arm_model, arm.State().q);
-  const RigidTransform X_KE = cell.layout.X_FK.inverse() * cell.layout.X_FE;
-  const Vector3 g_K = (X_BF * cell.layout.X_FK).linear().transpose() * Vector3(0, 0, -kGravity);
+  const RigidTransform X_BF = FlangePose(model.arm, arm.State().q);
+  const RigidTransform X_KE = model.layout.X_FK.inverse() * model.layout.X_FE;
+  const Vector3 g_K = (X_BF * model.layout.X_FK).linear().transpose() * Vector3(0, 0, -kGravity);
   Vector3 torque_K = Vector3::Zero();
   for (const std::size_t i : held_) {
     torque_K += (X_KE * CurveCentre(tubes[i].line_E)).cross(part.mass_kg * g_K);
@@ -323,12 +324,12 @@ Vector3 FakeWorld::HeldTorque_K() const {
 }
 
 Wrench FakeWorld::Weigh() {
-  const RigidTransform X_BF = FlangePose(arm_model, arm.State().q);
-  const RigidTransform X_NE_now = cell.bin.X_BN.inverse() * X_BF * cell.layout.X_FE;
-  const Matrix3 R_KB = (X_BF * cell.layout.X_FK).linear().transpose();
+  const RigidTransform X_BF = FlangePose(model.arm, arm.State().q);
+  const RigidTransform X_NE_now = cell.bin.X_BN.inverse() * X_BF * model.layout.X_FE;
+  const Matrix3 R_KB = (X_BF * model.layout.X_FK).linear().transpose();
   const Vector3 g_K = R_KB * Vector3(0, 0, -kGravity);
   Wrench out;
-  out.force_N = (kGripperMass_kg + kCouplingMass_kg) * g_K;
+  out.force_N = (PaperCell().gripper.mass_kg + PaperCell().gripper.coupling_mass_kg) * g_K;
   out.torque_Nm = kToolCentre_K.cross(out.force_N);
   if (!held_.empty() && X_NE_now.translation().z() > closed_at_m_ + kLifted_m) {
     out.force_N += static_cast<double>(held_.size()) * part.mass_kg * g_K;
@@ -349,7 +350,7 @@ OrganizedCloud FakeWorld::Look() {
   ++scans;
   log.push_back("scan");
   const RigidTransform X_NS =
-      cell.bin.X_BN.inverse() * FlangePose(arm_model, arm.State().q) * cell.layout.X_FS;
+      cell.bin.X_BN.inverse() * FlangePose(model.arm, arm.State().q) * model.layout.X_FS;
   ToyScene scene;
   scene.radius_m = part.radius_m;
   scene.bin = cell.bin;

@@ -8,12 +8,13 @@
 #include "models/arm/arm.h"
 #include "planner/extraction/registry.h"
 #include "planner/grasp/gripper_boxes.h"
+#include "tests/support/paper_cell.h"
 
 namespace tubetwin {
 
 /// The gripper of the first cell.
 inline const GripperGeometry& FirstGripper() {
-  static const GripperGeometry gripper = MakeGripperGeometry(Hc10(), CellLayout());
+  static const GripperGeometry gripper = MakeGripperGeometry(PaperCell());
   return gripper;
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/twin_cell/cell_fixture.h"
 #include "twin/cell/arm_body.h"
 
@@ -33,7 +34,7 @@ TEST_CASE("the arm tracks a 0.6 m line at 500 mm/s within 0.3 mm and its effort 
     p_before = p_BE;
     for (int i = 0; i < kNumJoints; ++i) {
       REQUIRE(std::abs(bench.impl().arm.torque_Nm()[i]) <=
-              bench.cell().arm_model.joints[i].max_effort_Nm);
+              bench.cell().model.arm.joints[i].max_effort_Nm);
     }
     bench.cell().clock.AdvanceTo(bench.cell().clock.Now() + kControlPeriod);
   }
@@ -47,8 +48,8 @@ TEST_CASE("the arm tracks a 0.6 m line at 500 mm/s within 0.3 mm and its effort 
 TEST_CASE("holding torques are those of the arm's masses in closed form") {
   Bench bench(FarTube(), NominalOptions(FarTube(), true));
   Wait(bench.cell(), 0.5);
-  const ArmModel& arm = bench.cell().arm_model;
-  const CellLayout& layout = bench.cell().layout;
+  const ArmModel& arm = bench.cell().model.arm;
+  const CellLayout& layout = bench.cell().model.layout;
   // Potential of links, sensor, scanner and tool; torque is its gradient by central differences.
   const auto potential = [&](const JointVector& q) {
     const auto X_BL = LinkPoses(arm, q);
@@ -57,15 +58,18 @@ TEST_CASE("holding torques are those of the arm's masses in closed form") {
     for (int i = 1; i <= kNumJoints; ++i) {
       sum += arm.links[i].mass_kg * (X_BL[i] * arm.links[i].centre_of_mass_m).z();
     }
-    sum += kSensorMass_kg * (X_BF * Vector3(0, 0, 0.5 * layout.X_FK.translation().z())).z();
-    const Vector3 p_FScanner = layout.X_FS * (HousingPose({}) * Vector3(0, 0, kScannerCentre_m));
-    sum += kScannerMass_kg * (X_BF * p_FScanner).z();
+    sum +=
+        PaperCell().wrist.mass_kg * (X_BF * Vector3(0, 0, 0.5 * layout.X_FK.translation().z())).z();
+    const Vector3 p_FScanner =
+        layout.X_FS * (HousingPose({}) * Vector3(0, 0, PaperCell().scanner.mass_centre_m));
+    sum += PaperCell().scanner.mass_kg * (X_BF * p_FScanner).z();
     // The tool's centre of mass as the world has it now; its moment is small.
     const CellWorld& world = bench.impl().world;
     const int tool = IdOf(world.model(), mjOBJ_BODY, "tool");
     const Vector3 p_BTool(world.data().subtree_com + 3 * tool);
     const Vector3 p_FTool = FlangePose(arm, bench.impl().arm.TruePosition()).inverse() * p_BTool;
-    sum += (kGripperMass_kg + kCouplingMass_kg) * (X_BF * p_FTool).z();
+    sum +=
+        (PaperCell().gripper.mass_kg + PaperCell().gripper.coupling_mass_kg) * (X_BF * p_FTool).z();
     return kGravity * sum;
   };
   const JointVector q = bench.impl().arm.TruePosition();
@@ -179,7 +183,7 @@ TEST_CASE("a guarded descent onto a tube stops at once, a free one goes to its e
   MotionOptions options;
   options.opening_m = 0.0;
   const double touch_m =
-      pile.bin.X_BN.translation().z() + 2 * radius_m + 0.5 * GripperSpec{}.pad_height_m;
+      pile.bin.X_BN.translation().z() + 2 * radius_m + 0.5 * PaperCell().gripper.pad_height_m;
   bench.MoveLine(bench.Down({0.60, 0.0, touch_m + 0.05}), options);
   options.speed_m_s = 0.03;
   const CheckedTrajectory free = bench.Line(bench.Down({0.60, 0.0, touch_m + 0.01}), options);
@@ -193,8 +197,9 @@ TEST_CASE("a guarded descent onto a tube stops at once, a free one goes to its e
   // 30 mm/s, 7 ms until the third sample and a ramp of 20 ms: half a millimetre.
   CHECK(std::abs(bench.X_BE().translation().z() - touch_m) < 0.001);
   // Load pushes the tool back: against z of K. The stop keeps the force on a bearable level.
-  const double push_N = -(bench.impl().wrist.TrueLoad().force_N.z() -
-                          (kGripperMass_kg + kCouplingMass_kg) * kGravity);
+  const double push_N =
+      -(bench.impl().wrist.TrueLoad().force_N.z() -
+        (PaperCell().gripper.mass_kg + PaperCell().gripper.coupling_mass_kg) * kGravity);
   CHECK(push_N > 5.0);
   CHECK(push_N < 60.0);
 }

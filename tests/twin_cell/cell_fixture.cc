@@ -1,6 +1,8 @@
 #include "tests/twin_cell/cell_fixture.h"
 
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
+#include "tests/support/paper_scan.h"
 
 namespace tubetwin::test {
 
@@ -22,6 +24,8 @@ Pile OneTube(const std::string& part, const Vector3& p_NMiddle) {
 
 TwinCellOptions NominalOptions(const Pile& pile, bool exact_wrist) {
   TwinCellOptions options;
+  options.model = PaperCell();
+  options.scan = PaperScan();
   options.physics = NominalPhysics(pile.part);
   if (exact_wrist) {
     options.physics.wrench_noise_counts = 0.0;
@@ -32,7 +36,7 @@ TwinCellOptions NominalOptions(const Pile& pile, bool exact_wrist) {
 }
 
 Bench::Bench(const Pile& pile, const TwinCellOptions& options)
-    : twin_(pile, options), planner_(twin_.cell().arm_model, options.layout, pile.bin) {}
+    : twin_(pile, options), planner_(twin_.cell().model, pile.bin) {}
 
 RigidTransform Bench::Down(const Vector3& p_BE) const {
   return MakeTransform(RotZ(kPi / 2) * RotX(kPi), p_BE);
@@ -66,7 +70,7 @@ GripperState Bench::GraspAt(const Vector3& p_N, double force_N) {
   options.finger_clearance_m = 0.001;
   const Vector3 p_B = cell().bin.X_BN * p_N;
   MoveLine(Down(p_B + Vector3(0, 0, 0.15)), options);
-  MoveLine(Down(p_B + Vector3(0, 0, GraspHeightOverAxis(p_N.z()))), options);
+  MoveLine(Down(p_B + Vector3(0, 0, GraspHeightOverAxis(p_N.z(), PaperCell().gripper))), options);
   return MoveGripper(cell(), {0.0, 0.10, force_N}).state;
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/twin_cell/cell_fixture.h"
 #include "twin/cell/gripper_body.h"
 
@@ -84,7 +85,7 @@ TEST_CASE("the pads stand where PadRetreat says at every opening and under load"
     const Vector3 p_BPad(world.data().geom_xpos +
                          3 * IdOf(world.model(), mjOBJ_GEOM, kPadLeftGeom));
     const double z_E = (bench.X_BE().inverse() * p_BPad).z();
-    return std::abs(z_E + PadRetreat(bench.impl().gripper.TrueOpening()));
+    return std::abs(z_E + PadRetreat(PaperCell().gripper, bench.impl().gripper.TrueOpening()));
   };
   constexpr double kPadHeight_m = 0.0005;
   double worst_m = 0.0;

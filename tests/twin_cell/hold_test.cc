@@ -62,7 +62,7 @@ void RunHoldProgramme(Bench& bench) {
   RigidTransform X_BE = bench.X_BE();
   X_BE.translation().z() = floor_m + 0.42;
   bench.MoveLine(X_BE, lift);
-  const Vector3 p_tilt = bench.cell().layout.p_BTilt;
+  const Vector3 p_tilt = bench.cell().model.layout.p_BTilt;
   bench.MoveLine(bench.Down(p_tilt), lift);
   for (const Vector3& axis : {Vector3(1, 0, 0), Vector3(0, 1, 0)}) {
     for (const double angle_deg : {45.0, -45.0}) {

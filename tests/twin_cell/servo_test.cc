@@ -51,7 +51,7 @@ TEST_CASE("drives without a new reference halt within the arm's limits and hold"
   Bench bench(FarTube());
   const CheckedTrajectory line = bench.Line(bench.Down({0.60, 0.30, 0.45}));
   TwinArm& arm = bench.impl().arm;
-  const ArmModel& model = bench.cell().arm_model;
+  const ArmModel& model = bench.cell().model.arm;
   const double until_s = 0.5 * line.duration_s();
   for (double t = 0.0; t < until_s; t += Seconds(kControlPeriod)) {
     arm.Follow(At(line.trajectory(), t));

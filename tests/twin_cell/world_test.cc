@@ -2,6 +2,7 @@
 
 #include "scenes/engine/engine_error.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/twin_cell/cell_fixture.h"
 #include "twin/cell/truth.h"
 #include "twin/render/scan/ray_scene.h"
@@ -21,7 +22,7 @@ TwinCellOptions ScanOptions(const Pile& pile) {
 }  // namespace
 
 TEST_CASE("a tube on the tray lies still and counts as there") {
-  const CellLayout layout;
+  const CellLayout layout = PaperCell().layout;
   Pile pile = OneTube("pvc_a", Vector3::Zero());
   const Vector3 p_NT = pile.bin.X_BN.inverse() * layout.X_BT.translation();
   pile = OneTube("pvc_a", p_NT + Vector3(0, 0, 0.013));
@@ -123,7 +124,8 @@ TEST_CASE("a scan takes its time, refuses a second one and sees tube, bin and po
   const Pile pile = OneTube("pvc_a", Vector3(0, 0, 0.0126));
   Bench bench(pile, ScanOptions(pile));
   Cell& cell = bench.cell();
-  const RigidTransform X_BE = bench.planner().PoseOfEForScan(DefaultScanPoses(pile.bin).front());
+  const RigidTransform X_BE =
+      bench.planner().PoseOfEForScan(ScanPosesOf(PaperCell(), pile.bin).front());
   const MotionResult there = bench.planner().PlanTransfer(cell.arm.State().q, X_BE, {});
   REQUIRE(std::holds_alternative<CheckedTrajectory>(there));
   REQUIRE(RunTrajectory(cell, std::get<CheckedTrajectory>(there)).status ==
@@ -133,7 +135,7 @@ TEST_CASE("a scan takes its time, refuses a second one and sees tube, bin and po
   REQUIRE(cell.scanner.Trigger().accepted());
   CHECK_THAT(cell.scanner.Trigger().reason, Catch::Contains("a scan is running"));
   while (cell.scanner.Status() == ScanStatus::kBusy) Wait(cell, 0.001);
-  CHECK(Seconds(cell.clock.Now() - start) == Approx(ScannerSpec{}.scan_time_s));
+  CHECK(Seconds(cell.clock.Now() - start) == Approx(PaperCell().scanner.scan_time_s));
   const OrganizedCloud cloud = cell.scanner.Take();
   CHECK(cell.scanner.Status() == ScanStatus::kIdle);
   REQUIRE(cloud.width == 258);
@@ -165,8 +167,8 @@ TEST_CASE("nothing of arm and gripper stands in the camera's view or in the proj
   const Pile pile = OneTube("pvc_a", Vector3(0, 0, 0.0126));
   Bench bench(pile, ScanOptions(pile));
   Cell& cell = bench.cell();
-  Pinhole pinhole{258, 193, static_cast<float>(ScannerSpec{}.focal_px * 258 / 2064)};
-  const auto views = DefaultScanPoses(pile.bin);
+  Pinhole pinhole{258, 193, static_cast<float>(PaperCell().scanner.focal_px * 258 / 2064)};
+  const auto views = ScanPosesOf(PaperCell(), pile.bin);
   for (const double width_m : {0.085, 0.0}) {
     cell.gripper.Command({width_m, 0.1, 60.0});
     for (const RigidTransform& X_BSView : {views.front(), views[views.size() / 2], views.back()}) {

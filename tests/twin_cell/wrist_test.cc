@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/twin_cell/cell_fixture.h"
 #include "twin/cell/twin_wrist.h"
 
@@ -20,7 +21,7 @@ RoundPhysics Quiet() {
 
 /// The chain's answer to a constant load once the low-pass has settled.
 WrenchSample Settled(const RoundPhysics& physics, const Wrench& load) {
-  WrenchChain chain(physics, RandomStream(1, 0, "wrench"));
+  WrenchChain chain(PaperCell().wrist, physics, RandomStream(1, 0, "wrench"));
   WrenchSample sample;
   for (int i = 0; i < 100; ++i) sample = chain.Next(load, kControlPeriod * i);
   return sample;
@@ -33,7 +34,8 @@ TEST_CASE("a hanging mass reads as its weight along z out of the tool") {
   Bench bench(pile, NominalOptions(pile, true));
   Wait(bench.cell(), 0.5);
   const Wrench empty = AverageWrench(bench.cell(), 0.2).mean_K;
-  const double tool_N = (kGripperMass_kg + kCouplingMass_kg) * kGravity;
+  const double tool_N =
+      (PaperCell().gripper.mass_kg + PaperCell().gripper.coupling_mass_kg) * kGravity;
   CHECK(empty.force_N.z() == Approx(tool_N).margin(kHalfCount_N));
   CHECK(std::abs(empty.force_N.x()) < 0.02);
   CHECK(std::abs(empty.force_N.y()) < 0.02);
@@ -57,7 +59,7 @@ TEST_CASE("a held tube adds its weight and the torque of its centre of mass") {
   // Torque about K's origin: p_KC x weight; all in K, whose axes E shares.
   const CellWorld& world = bench.impl().world;
   const Vector3 p_BC = world.tubes()[0].CentreOfMass_W(world.model(), world.data());
-  const CellLayout& layout = bench.cell().layout;
+  const CellLayout& layout = bench.cell().model.layout;
   const RigidTransform X_BK = bench.X_BE() * layout.X_FE.inverse() * layout.X_FK;
   const Vector3 expected_Nm =
       (X_BK.inverse() * p_BC).cross(X_BK.linear().transpose() * Vector3(0, 0, -weight_N));
@@ -99,9 +101,9 @@ TEST_CASE("loads beyond the range are clamped to it and flagged") {
 TEST_CASE("white noise has one count of deviation and repeats with its stream") {
   RoundPhysics physics = Quiet();
   physics.wrench_noise_counts = 1.0;
-  WrenchChain chain(physics, RandomStream(5, 2, "wrench"));
-  WrenchChain same(physics, RandomStream(5, 2, "wrench"));
-  WrenchChain other(physics, RandomStream(5, 3, "wrench"));
+  WrenchChain chain(PaperCell().wrist, physics, RandomStream(5, 2, "wrench"));
+  WrenchChain same(PaperCell().wrist, physics, RandomStream(5, 2, "wrench"));
+  WrenchChain other(PaperCell().wrist, physics, RandomStream(5, 3, "wrench"));
   constexpr int kSamples = 4000;
   double sum = 0.0, squares = 0.0;
   int equal_to_other = 0;
@@ -124,7 +126,7 @@ TEST_CASE("bias walks as far as the round's physics says") {
   constexpr int kStreams = 60, kSamples = 6000;  // A hundredth of ten minutes.
   double squares = 0.0;
   for (int s = 0; s < kStreams; ++s) {
-    WrenchChain chain(physics, RandomStream(9, s, "wrench"));
+    WrenchChain chain(PaperCell().wrist, physics, RandomStream(9, s, "wrench"));
     WrenchSample last;
     for (int i = 0; i < kSamples; ++i) last = chain.Next({}, kControlPeriod * i);
     squares += std::pow(last.wrench_K.force_N.z(), 2) / kStreams;

@@ -40,7 +40,7 @@ void AddConfigVerb(CLI::App& app, Common& common) {
   AddCommonOptions(*schema, common, "", false);
   schema->callback([&common] {
     common.action = [] {
-      Scenario scenario;
+      Scenario scenario = ReadScenario(ConfigSource());
       std::printf("%s\n", WriteConfigSchema([&](ConfigVisitor& v) { scenario.Visit(v); }).c_str());
       return 0;
     };

@@ -83,7 +83,8 @@ std::vector<Finding> ExamineCell(const Scenario& scenario, const std::string& fo
   scenario.cell.ValidateOrThrow();
   const CellConfig& cell = scenario.cell;
   const WallClock clock(scenario.rate);
-  DriverContext context = ScenarioContext(scenario, Hc10(), clock, CellPurpose::kLook, folder);
+  const CellModel model = ScenarioModel(scenario);
+  DriverContext context = ScenarioContext(scenario, model, clock, CellPurpose::kLook, folder);
   context.believed_X_NS = [] { return RigidTransform::Identity(); };
   std::vector<Finding> out;
   out.push_back(Look("arm", cell.arm, context, [&](const Arm& arm) {

@@ -74,10 +74,11 @@ int ScanPile(const ScanOptions& scan, const Common& common) {
   const Scenario scenario = LoadScenario({}, common);
   const std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
   const RoundPhysics physics = ScenarioPhysics(scenario, pile.part);
-  ScanSettings settings = ScenarioScan(scenario, physics);
+  const CellModel model = ScenarioModel(scenario);
+  ScanSettings settings = ScenarioScan(scenario, model, physics);
   settings.labels = scan.labels;
   const ScanGeometry geometry = GeometryOf(pile);
-  const std::vector<RigidTransform> poses_BS = ScanPoses(scenario.scan, pile.bin);
+  const std::vector<RigidTransform> poses_BS = ScanPoses(scenario.scan, model, pile.bin);
   MakeFolder(common.out);
   for (const std::size_t i : ChosenViews(scan.view, poses_BS.size())) {
     const RigidTransform X_BS_true = poses_BS[i] * physics.X_SbelievedS;
@@ -170,9 +171,8 @@ int EvaluatePile(const EvaluateOptions& given, const Common& common) {
   const TubeScene scene = SceneOfPile(pile);
   EvaluationRequest request = MakeRequest(scene, pile, given, scenario.planner);
   request.seed = static_cast<std::uint64_t>(scenario.seed);
-  const EvaluateFunction evaluate =
-      MakeEvaluator({common.parallelism(), scenario.evaluator,
-                     MakeGripperGeometry(Hc10(), ScenarioLayout(scenario))});
+  const EvaluateFunction evaluate = MakeEvaluator(
+      {common.parallelism(), scenario.evaluator, MakeGripperGeometry(ScenarioModel(scenario))});
   const EvaluationResult result = evaluate(scene, pile.part, pile.bin, request);
   const Json json = ToJson(result);
   WriteJsonFile(json, common.out);

@@ -39,14 +39,14 @@ Seen ReadScene(const CloudInput& input, const Scenario& scenario) {
     throw Error(ErrorKind::kUsage, file + ": names no part; give --part");
   }
   const auto bin = document.Optional("bin");
-  seen.bin = bin ? BinFromJson(*bin) : ScenarioBin(scenario, Bin().size_m, ".");
+  seen.bin = bin ? BinFromJson(*bin) : ScenarioBin(scenario, std::nullopt, ".");
   if (!input.bin.empty()) seen.bin.size_m = ParseBinSize(input.bin);
   return seen;
 }
 
 Seen PerceiveScene(const CloudInput& input, const Scenario& scenario, const Common& common) {
   if (input.part.empty()) throw Error(ErrorKind::kUsage, "plan of clouds: --part is needed");
-  Seen seen{{}, LoadPart(input.part), ScenarioBin(scenario, Bin().size_m, "."), {}};
+  Seen seen{{}, LoadPart(input.part), ScenarioBin(scenario, std::nullopt, "."), {}};
   if (!input.bin.empty()) seen.bin.size_m = ParseBinSize(input.bin);
   const std::vector<OrganizedCloud> views = ReadViews(input, seen.bin, common);
   seen.scene = Perceive(views, seen.part, seen.bin, scenario.perception, common.parallelism());
@@ -57,7 +57,9 @@ Seen PerceiveScene(const CloudInput& input, const Scenario& scenario, const Comm
 /// Where the arm stands when the cycle plans: at the last view, the fingers open.
 PathStart AfterLooking(const MotionPlanner& planner, const Scenario& scenario, const Bin& bin) {
   PathStart start;
-  const RigidTransform X_BE = planner.PoseOfEForScan(ScanPoses(scenario.scan, bin).back());
+  start.opening_m = planner.model().gripper.stroke_m;
+  const RigidTransform X_BE =
+      planner.PoseOfEForScan(ScanPoses(scenario.scan, planner.model(), bin).back());
   if (const auto q = planner.Reach(X_BE)) start.q = *q;
   return start;
 }
@@ -81,10 +83,9 @@ int Plan(const CloudInput& input, const Common& common) {
   const Scenario scenario = LoadScenario({}, common, input.profile);
   const bool one_scene = input.clouds.size() == 1 && input.clouds.front().ends_with(".json");
   const Seen seen = one_scene ? ReadScene(input, scenario) : PerceiveScene(input, scenario, common);
-  const CellLayout layout = ScenarioLayout(scenario);
-  const ArmModel& arm = Hc10();
-  const GripperGeometry gripper = MakeGripperGeometry(arm, layout);
-  const MotionPlanner planner(arm, layout, seen.bin);
+  const CellModel model = ScenarioModel(scenario);
+  const GripperGeometry gripper = MakeGripperGeometry(model);
+  const MotionPlanner planner(model, seen.bin);
   const PickProblem problem{seen.scene,
                             seen.points_N,
                             seen.part,

@@ -85,7 +85,7 @@ void ReadInputs(CampaignVariant& variant, const std::string& folder, int rounds)
   }
   variant.part = LoadPart(ScenarioPartName(scenario));
   variant.tubes = scenario.pile.count;
-  ScenarioBin(scenario, Bin().size_m, folder);
+  ScenarioBin(scenario, std::nullopt, folder);
 }
 
 void AddVariants(ConfigSource table, const std::string& where,

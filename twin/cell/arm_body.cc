@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "models/clearance.h"
-#include "models/scanner_spec.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/contact_bits.h"
 
@@ -13,7 +11,6 @@ namespace {
 
 /// Links below this one stay out of contact: shoulder and upper arm turn above the plate.
 constexpr int kFirstLinkInContact = 3;
-constexpr int kFlangeLink = 7;  ///< As in ClearanceChecker::Shape.
 
 void SetInertial(mjsBody& body, double mass_kg, const Vector3& centre_m, const Matrix3& inertia) {
   body.explicitinertial = 1;
@@ -31,23 +28,22 @@ Matrix3 BoxInertia(double mass_kg, const Vector3& size_m) {
          Vector3(s.y() + s.z(), s.x() + s.z(), s.x() + s.y()).asDiagonal().toDenseMatrix();
 }
 
-mjtGeom GeomType(ClearanceChecker::Shape::Kind kind) {
+mjtGeom GeomType(Shape::Kind kind) {
   switch (kind) {
-    case ClearanceChecker::Shape::Kind::kBox:
+    case Shape::Kind::kBox:
       return mjGEOM_BOX;
-    case ClearanceChecker::Shape::Kind::kCapsule:
+    case Shape::Kind::kCapsule:
       return mjGEOM_CAPSULE;
-    case ClearanceChecker::Shape::Kind::kCylinder:
+    case Shape::Kind::kCylinder:
       return mjGEOM_CYLINDER;
-    case ClearanceChecker::Shape::Kind::kSphere:
+    case Shape::Kind::kSphere:
       break;
   }
   return mjGEOM_SPHERE;
 }
 
 /// Adds one shape; X_BodyShape is its pose in the body's frame.
-void AddShape(mjsBody& body, const ClearanceChecker::Shape& shape,
-              const RigidTransform& X_BodyShape, int contype) {
+void AddShape(mjsBody& body, const Shape& shape, const RigidTransform& X_BodyShape, int contype) {
   mjsGeom* geom = mjs_addGeom(&body, nullptr);
   SetName(geom->element, "arm_" + shape.name);
   geom->type = GeomType(shape.kind);
@@ -60,7 +56,7 @@ void AddShape(mjsBody& body, const ClearanceChecker::Shape& shape,
   geom->friction[0] = 0.3;
   geom->solref[0] = 0.005;
   const std::array<float, 4> rgba = shape.scanner ? std::array<float, 4>{0.10f, 0.10f, 0.11f, 1.0f}
-                                    : shape.link == kFlangeLink
+                                    : shape.link == kFlangeBody
                                         ? std::array<float, 4>{0.30f, 0.31f, 0.33f, 1.0f}
                                         : std::array<float, 4>{0.24f, 0.42f, 0.66f, 1.0f};
   std::copy(rgba.begin(), rgba.end(), geom->rgba);
@@ -104,6 +100,15 @@ mjsBody& AddFixed(mjsBody& link6, const std::string& name, const RigidTransform&
   return *body;
 }
 
+/// Above the sensor's tool face, so not weighed.
+void AddScanner(mjsBody& link6, const CellModel& model) {
+  const ScannerSpec& spec = model.scanner;
+  mjsBody& scanner =
+      AddFixed(link6, "scanner", model.arm.X_6F * model.layout.X_FS * HousingPose(spec));
+  SetInertial(scanner, spec.mass_kg, Vector3(0, 0, spec.mass_centre_m),
+              BoxInertia(spec.mass_kg, spec.inertia_box_m));
+}
+
 void AddWristSensor(mjSpec& spec, mjsBody& tool) {
   mjsSite* site = mjs_addSite(&tool, nullptr);
   SetName(site->element, kWristSite);
@@ -123,7 +128,9 @@ void AddWristSensor(mjSpec& spec, mjsBody& tool) {
 
 std::string ArmJointName(int joint) { return "arm_joint" + std::to_string(joint + 1); }
 
-mjsBody& AddArm(mjSpec& spec, const ArmModel& arm, const CellLayout& layout) {
+mjsBody& AddArm(mjSpec& spec, const CellModel& model) {
+  const ArmModel& arm = model.arm;
+  const CellLayout& layout = model.layout;
   std::array<mjsBody*, kNumJoints + 1> links{};
   links[0] = mjs_addBody(mjs_findBody(&spec, "world"), nullptr);
   SetName(links[0]->element, "arm_base");
@@ -134,16 +141,15 @@ mjsBody& AddArm(mjSpec& spec, const ArmModel& arm, const CellLayout& layout) {
   const double sensor_height_m = layout.X_FK.translation().z();
   mjsBody& sensor =
       AddFixed(link6, "wrist_sensor", arm.X_6F * Translation(0, 0, 0.5 * sensor_height_m));
-  SetInertial(sensor, kSensorMass_kg, Vector3::Zero(),
-              BoxInertia(kSensorMass_kg, Vector3(0.075, 0.075, sensor_height_m)));
-  mjsBody& scanner = AddFixed(link6, "scanner", arm.X_6F * layout.X_FS * HousingPose({}));
-  SetInertial(scanner, kScannerMass_kg, Vector3(0, 0, kScannerCentre_m),
-              BoxInertia(kScannerMass_kg, Vector3(0.30, 0.08, 0.07)));
+  const double side_m = model.wrist.inertia_side_m;
+  SetInertial(sensor, model.wrist.mass_kg, Vector3::Zero(),
+              BoxInertia(model.wrist.mass_kg, Vector3(side_m, side_m, sensor_height_m)));
+  if (layout.scanner_mount == CellLayout::ScannerMount::kFlange) AddScanner(link6, model);
   mjsBody& tool = AddFixed(link6, "tool", X_6K);
   AddWristSensor(spec, tool);
 
-  for (const ClearanceChecker::Shape& shape : ClearanceChecker::ArmShapes(arm, layout)) {
-    if (shape.link < kFlangeLink) {
+  for (const Shape& shape : MovingShapes(model)) {
+    if (shape.link < kFlangeBody) {
       AddShape(*links[shape.link], shape, shape.X_LinkShape,
                shape.link >= kFirstLinkInContact ? kArmBit : 0);
       continue;

@@ -18,6 +18,7 @@ namespace tubetwin {
 namespace {
 
 constexpr std::array<float, 4> kPlateRgba = {0.55f, 0.56f, 0.58f, 1.0f};
+constexpr std::array<float, 4> kHousingRgba = {0.10f, 0.10f, 0.11f, 1.0f};
 constexpr std::array<float, 4> kTrayRgba = {0.70f, 0.66f, 0.55f, 1.0f};
 
 constexpr double kPlateThickness_m = 0.02;
@@ -44,8 +45,25 @@ void AddBox(mjSpec& spec, const std::string& name, const RigidTransform& X_BBox,
   std::copy(rgba.begin(), rgba.end(), box->rgba);
 }
 
+void AddPlate(mjSpec& spec, const CellLayout& layout, double friction) {
+  const auto& centre = layout.plate_centre_m;
+  const auto& size = layout.plate_size_m;
+  AddBox(spec, "plate",
+         Translation(centre[0], centre[1], layout.plate_z_m - 0.5 * kPlateThickness_m),
+         Vector3(0.5 * size[0], 0.5 * size[1], 0.5 * kPlateThickness_m), friction, kPlateRgba);
+}
+
+/// What stands in the cell besides bin and tray.
+void AddStanding(mjSpec& spec, const CellModel& model, double friction) {
+  for (const Shape& shape : StandingShapes(model)) {
+    TT_CHECK(shape.kind == Shape::Kind::kBox);
+    AddBox(spec, "standing_" + shape.name, shape.X_LinkShape, shape.size_m, friction,
+           shape.scanner ? kHousingRgba : kPlateRgba);
+  }
+}
+
 /// The bin as piles have it, on a plinth set back so that nothing rests on its edge.
-void AddBinOnPlinth(mjSpec& spec, const Bin& bin, double friction) {
+void AddBinOnPlinth(mjSpec& spec, const Bin& bin, double plate_z_m, double friction) {
   BinBodyOptions options;
   options.X_WN = bin.X_BN;
   options.friction = friction;
@@ -58,7 +76,7 @@ void AddBinOnPlinth(mjSpec& spec, const Bin& bin, double friction) {
     geom->conaffinity = kSceneAccepts;
   }
   const double t = Bin::kWallThickness_m;
-  const double below_m = bin.X_BN.translation().z() - t;
+  const double below_m = bin.X_BN.translation().z() - t - plate_z_m;
   if (below_m <= 0.0) return;
   AddBox(spec, "bin_plinth", bin.X_BN * Translation(0, 0, -t - 0.5 * below_m),
          {0.9 * bin.half_x_m(), 0.9 * bin.half_y_m(), 0.5 * below_m}, friction, kPlateRgba);
@@ -67,7 +85,7 @@ void AddBinOnPlinth(mjSpec& spec, const Bin& bin, double friction) {
 void AddTray(mjSpec& spec, const CellLayout& layout, double friction) {
   // A solid block from the plate up to the surface.
   const double half_m = 0.5 * layout.tray_size_m;
-  const double half_height_m = 0.5 * layout.X_BT.translation().z();
+  const double half_height_m = 0.5 * (layout.X_BT.translation().z() - layout.plate_z_m);
   TT_CHECK(half_height_m > 0.0);
   AddBox(spec, "tray", layout.X_BT * Translation(0, 0, -half_height_m),
          {half_m, half_m, half_height_m}, friction, kTrayRgba);
@@ -90,10 +108,11 @@ void SetLooks(mjSpec& spec) {
 
 }  // namespace
 
-JointVector HomePosition(const ArmModel& arm, const CellLayout& layout, const Bin& bin) {
+JointVector HomePosition(const CellModel& model, const Bin& bin) {
+  const CellLayout& layout = model.layout;
   const Vector3 p_BE = bin.X_BN.translation() + Vector3(0, 0, layout.carry_height_m);
   const RigidTransform X_BF = MakeTransform(RotX(kPi), p_BE) * layout.X_FE.inverse();
-  const InverseNearResult home = InverseWorking(arm, X_BF);
+  const InverseNearResult home = InverseWorking(model.arm, X_BF);
   if (home.status != InverseNearResult::Status::kFound) {
     throw Error(ErrorKind::kConfig,
                 "cell: the arm does not reach the middle of the bin at carry height " +
@@ -102,7 +121,8 @@ JointVector HomePosition(const ArmModel& arm, const CellLayout& layout, const Bi
   return home.q;
 }
 
-CellWorld::CellWorld(const Pile& pile, const CellLayout& layout, const RoundPhysics& physics) {
+CellWorld::CellWorld(const Pile& pile, const CellModel& model, const RoundPhysics& physics)
+    : gripper_(model.gripper) {
   EngineOptions options;
   options.timestep_s = Seconds(kControlPeriod);
   options.impratio = 100.0;
@@ -112,18 +132,18 @@ CellWorld::CellWorld(const Pile& pile, const CellLayout& layout, const RoundPhys
   spec_->option.enableflags |= mjENBL_SLEEP;
   spec_->option.sleep_tolerance = kSleepSpeed_m_s;
   SetLooks(*spec_);
-  AddBox(*spec_, "plate", Translation(0.25, -0.25, -0.5 * kPlateThickness_m),
-         Vector3(1.0, 1.0, 0.5 * kPlateThickness_m), physics.tube_friction, kPlateRgba);
-  AddBinOnPlinth(*spec_, pile.bin, physics.tube_friction);
-  AddTray(*spec_, layout, physics.tube_friction);
-  mjsBody& tool = AddArm(*spec_, Hc10(), layout);
-  AddGripper(*spec_, tool, layout, gripper_, physics);
+  AddPlate(*spec_, model.layout, physics.tube_friction);
+  AddBinOnPlinth(*spec_, pile.bin, model.layout.plate_z_m, physics.tube_friction);
+  AddTray(*spec_, model.layout, physics.tube_friction);
+  AddStanding(*spec_, model, physics.tube_friction);
+  mjsBody& tool = AddArm(*spec_, model);
+  AddGripper(*spec_, tool, model, physics);
   const TubeBodyOptions tube_options = MakeTubeBodyOptions(pile.part, physics, pile.bin.X_BN);
   for (const PileTube& tube : pile.tubes) {
     tubes_.emplace_back(*spec_, "tube" + std::to_string(tube.id), tube, tube_options);
   }
 
-  CompileWithStart(HomePosition(Hc10(), layout, pile.bin));
+  CompileWithStart(HomePosition(model, pile.bin));
   MapGeoms(pile);
   pad_contacts_.emplace(*model_);
   Refresh();

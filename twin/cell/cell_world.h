@@ -5,12 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "models/arm/arm.h"
 #include "models/base/json_fwd.h"
 #include "models/base/time.h"
-#include "models/bin.h"
-#include "models/gripper_spec.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 #include "models/physics.h"
 #include "scenes/engine/mj_handles.h"
 #include "scenes/pile.h"
@@ -27,7 +24,7 @@ namespace tubetwin {
 /// motor torques and the gripper's servo.
 class CellWorld {
  public:
-  CellWorld(const Pile& pile, const CellLayout& layout, const RoundPhysics& physics);
+  CellWorld(const Pile& pile, const CellModel& model, const RoundPhysics& physics);
 
   TimeNs now() const { return kControlPeriod * steps_; }
   mjModel& model() const { return *model_; }
@@ -77,6 +74,6 @@ class CellWorld {
 
 /// Arm position at the start: E over the middle of the bin at carry height, tool vertical. Throws
 /// Error(kConfig) when the layout puts that out of reach.
-JointVector HomePosition(const ArmModel& arm, const CellLayout& layout, const Bin& bin);
+JointVector HomePosition(const CellModel& model, const Bin& bin);
 
 }  // namespace tubetwin

@@ -10,15 +10,9 @@
 namespace tubetwin {
 namespace {
 
-// Masses below the sensor sum to gripper and coupling of models/layout.h.
-constexpr double kFingerMass_kg = 0.10;
 constexpr double kCarriageMass_kg = 0.05;
-/// Centre of mass of palm and coupling in K: the gearbox sits near the coupling.
-constexpr double kPalmCentre_m = 0.050;
 
 constexpr double kPadHalfThickness_m = 0.003;
-/// Bar behind the pad: from its lower edge up towards the palm.
-constexpr double kFingerBar_m = 0.075;
 
 void SetInertial(mjsBody& body, double mass_kg, const Vector3& centre_m, double ixx, double iyy,
                  double izz) {
@@ -75,7 +69,7 @@ void AddFinger(mjsBody& carriage, double side, const char* joint_name, const cha
   mjsBody* finger = mjs_addBody(&carriage, nullptr);
   SetName(finger->element, std::string(joint_name) + "_body");
   finger->pos[1] = side * (0.5 * gripper.stroke_m + kPadHalfThickness_m);
-  SetInertial(*finger, kFingerMass_kg, Vector3(0, 0, -0.03), 5e-5, 5e-5, 5e-5);
+  SetInertial(*finger, gripper.finger_mass_kg, Vector3(0, 0, -0.03), 5e-5, 5e-5, 5e-5);
   mjsJoint& slide = AddSlide(*finger, joint_name, Vector3(0, -side, 0), 0.5 * gripper.stroke_m);
   slide.armature = 0.1;
   slide.damping[0] = 2.0;
@@ -87,9 +81,9 @@ void AddFinger(mjsBody& carriage, double side, const char* joint_name, const cha
   const double half_thickness_m = 0.5 * (gripper.finger_thickness_m - 2 * kPadHalfThickness_m);
   bar->size[0] = 0.5 * gripper.pad_width_m;
   bar->size[1] = half_thickness_m;
-  bar->size[2] = 0.5 * kFingerBar_m;
+  bar->size[2] = 0.5 * gripper.finger_length_m;
   bar->pos[1] = side * (kPadHalfThickness_m + half_thickness_m);
-  bar->pos[2] = 0.5 * gripper.pad_height_m - 0.5 * kFingerBar_m;
+  bar->pos[2] = 0.5 * gripper.pad_height_m - 0.5 * gripper.finger_length_m;
   bar->mass = 0.0;
   bar->condim = 4;
   bar->friction[0] = 0.3;
@@ -145,7 +139,7 @@ AdvancePolynomial FitTipAdvance(const GripperSpec& spec) {
     // The unknowns are scaled by the half stroke; metres to the fourth are tiny.
     const double u = static_cast<double>(i) / (kSamples - 1);
     A.row(i) << u, u * u, u * u * u, u * u * u * u;
-    advance[i] = TipAdvance(spec.stroke_m * (1.0 - u)) - TipAdvance(spec.stroke_m);
+    advance[i] = TipAdvance(spec, spec.stroke_m * (1.0 - u)) - TipAdvance(spec, spec.stroke_m);
   }
   const Eigen::Vector4d scaled = A.colPivHouseholderQr().solve(advance);
   AdvancePolynomial fit;
@@ -158,15 +152,19 @@ AdvancePolynomial FitTipAdvance(const GripperSpec& spec) {
   return fit;
 }
 
-void AddGripper(mjSpec& spec, mjsBody& tool, const CellLayout& layout, const GripperSpec& gripper,
-                const RoundPhysics& physics) {
-  const double palm_kg = kGripperMass_kg + kCouplingMass_kg - 2 * kFingerMass_kg - kCarriageMass_kg;
-  SetInertial(tool, palm_kg, Vector3(0, 0, kPalmCentre_m), 2e-3, 2e-3, 1e-3);
+void AddGripper(mjSpec& spec, mjsBody& tool, const CellModel& model, const RoundPhysics& physics) {
+  const GripperSpec& gripper = model.gripper;
+  const CellLayout& layout = model.layout;
+  // Masses below the sensor sum to those of gripper and coupling.
+  const double palm_kg =
+      gripper.mass_kg + gripper.coupling_mass_kg - 2 * gripper.finger_mass_kg - kCarriageMass_kg;
+  SetInertial(tool, palm_kg, Vector3(0, 0, gripper.palm_centre_m), 2e-3, 2e-3, 1e-3);
 
   mjsBody* carriage = mjs_addBody(&tool, nullptr);
   SetName(carriage->element, kCarriageJoint + std::string("_body"));
   const RigidTransform X_KE = layout.X_FK.inverse() * layout.X_FE;
-  SetPose(X_KE * Translation(0, 0, -PadRetreat(gripper.stroke_m)), carriage->pos, carriage->quat);
+  SetPose(X_KE * Translation(0, 0, -PadRetreat(gripper, gripper.stroke_m)), carriage->pos,
+          carriage->quat);
   SetInertial(*carriage, kCarriageMass_kg, Vector3(0, 0, -0.06), 2e-5, 2e-5, 2e-5);
   mjsJoint& slide = AddSlide(*carriage, kCarriageJoint, Vector3::UnitZ(), 1.0);
   slide.limited = mjLIMITED_FALSE;  // The coupling holds it.

@@ -4,8 +4,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "models/gripper_spec.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 #include "models/physics.h"
 
 namespace tubetwin {
@@ -35,7 +34,6 @@ AdvancePolynomial FitTipAdvance(const GripperSpec& spec);
 
 /// Adds carriage, fingers, pads, couplings and actuator to `tool`, a body whose frame is K, and the
 /// tool's own mass. Fully open at the start.
-void AddGripper(mjSpec& spec, mjsBody& tool, const CellLayout& layout, const GripperSpec& gripper,
-                const RoundPhysics& physics);
+void AddGripper(mjSpec& spec, mjsBody& tool, const CellModel& model, const RoundPhysics& physics);
 
 }  // namespace tubetwin

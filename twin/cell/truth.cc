@@ -89,7 +89,7 @@ Truth::Truth(const TwinCell& cell) : cell_(cell) {}
 std::vector<Truth::Tube> Truth::Tubes() const {
   const TwinCell::Impl& impl = *cell_.impl_;
   const Pile& start = impl.start_pile;
-  const CellLayout& layout = impl.cell.layout;
+  const CellLayout& layout = impl.model.layout;
   const Bin& bin = start.bin;
   const mjModel& model = impl.world.model();
   const mjData& data = impl.world.data();

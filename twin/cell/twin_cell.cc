@@ -15,15 +15,16 @@ void TwinClock::AdvanceTo(TimeNs t) {
 }
 
 TwinCell::Impl::Impl(const Pile& pile, const TwinCellOptions& options)
-    : world(pile, options.layout, options.physics),
-      arm(Hc10(), world),
+    : model(options.model),
+      world(pile, model, options.physics),
+      arm(model.arm, world),
       gripper(world),
-      wrist(world, options.physics, RandomStream(options.seed, options.round, "wrench")),
-      scanner(Hc10(), world, arm,
-              {options.layout, pile.bin, options.physics, options.scan, options.parallelism},
+      wrist(model.wrist, world, options.physics,
+            RandomStream(options.seed, options.round, "wrench")),
+      scanner(model, world, arm, {pile.bin, options.physics, options.scan, options.parallelism},
               RandomStream(options.seed, options.round, "scan")),
       clock(*this),
-      cell{clock, arm, gripper, wrist, scanner, Hc10(), options.layout, pile.bin, {}},
+      cell{clock, arm, gripper, wrist, scanner, model, pile.bin, {}},
       start_pile(pile) {
   // The first sample of the wrist, with the arm already held by its motors.
   arm.Control();

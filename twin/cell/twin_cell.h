@@ -15,7 +15,7 @@
 namespace tubetwin {
 
 struct TwinCellOptions {
-  CellLayout layout;
+  CellModel model;
   RoundPhysics physics;
   std::uint64_t seed = 1;  ///< Of noise streams.
   std::uint64_t round = 0;

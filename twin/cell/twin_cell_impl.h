@@ -32,6 +32,7 @@ struct TwinCell::Impl {
   /// One control period: torques and servo, physics, a sample of the wrist, a frame when due.
   void Step();
 
+  CellModel model;
   CellWorld world;
   TwinArm arm;
   TwinGripper gripper;

@@ -10,9 +10,6 @@
 namespace tubetwin {
 namespace {
 
-// The position register of the real device: 3 fully open, 230 closed with normal fingertips.
-constexpr double kOpenCount = 3.0, kClosedCount = 230.0;
-
 constexpr double kStillSpeed_m_s = 0.002;  ///< Slower than this is standing, of the opening.
 constexpr int kStillSamples = 30;          ///< 30 ms.
 constexpr double kAtPosition_m = 0.0008;   ///< Two counts.
@@ -21,16 +18,16 @@ constexpr double kLost_m = 0.001;
 /// The servo's lead that saturates the force with margin.
 constexpr double kSaturation = 1.3;
 
-/// A byte of the register block for a value between the ends, back as the value it stands for.
-double AsByte(double value, double low, double high) {
+/// The step nearest to a value between the ends, back as the value it stands for.
+double AsStep(double value, double low, double high, int steps) {
   const double share = (std::clamp(value, low, high) - low) / (high - low);
-  return low + (high - low) * std::round(share * 255.0) / 255.0;
+  return low + (high - low) * std::round(share * steps) / steps;
 }
 
-double QuantisedOpening(double opening_m, double stroke_m) {
-  const double counts = kClosedCount - kOpenCount;
-  const double count = std::round(std::clamp(opening_m / stroke_m, 0.0, 1.0) * counts);
-  return stroke_m * count / counts;
+double QuantisedOpening(double opening_m, const GripperSpec& spec) {
+  const double counts = spec.opening_counts;
+  const double count = std::round(std::clamp(opening_m / spec.stroke_m, 0.0, 1.0) * counts);
+  return spec.stroke_m * count / counts;
 }
 
 }  // namespace
@@ -51,9 +48,10 @@ double TwinGripper::Travel() const { return data_.ten_length[tendon_]; }
 double TwinGripper::TrueOpening() const { return spec_.stroke_m - Travel(); }
 
 void TwinGripper::Command(const GripperCommand& command) {
-  target_m_ = spec_.stroke_m - QuantisedOpening(command.opening_m, spec_.stroke_m);
-  speed_m_s_ = AsByte(command.speed_m_s, spec_.min_speed_m_s, spec_.max_speed_m_s);
-  force_N_ = AsByte(command.force_N, spec_.min_force_N, spec_.max_force_N);
+  target_m_ = spec_.stroke_m - QuantisedOpening(command.opening_m, spec_);
+  speed_m_s_ =
+      AsStep(command.speed_m_s, spec_.min_speed_m_s, spec_.max_speed_m_s, spec_.command_counts);
+  force_N_ = AsStep(command.force_N, spec_.min_force_N, spec_.max_force_N, spec_.command_counts);
   SetForceRange();
   MoveOn();
 }
@@ -89,7 +87,7 @@ void TwinGripper::Restore(const JsonView& state) {
 GripperState TwinGripper::State() const {
   GripperState state;
   state.time = world_.now();
-  state.opening_m = QuantisedOpening(TrueOpening(), spec_.stroke_m);
+  state.opening_m = QuantisedOpening(TrueOpening(), spec_);
   state.requested_m = spec_.stroke_m - target_m_;
   switch (phase_) {
     case Phase::kMoving:

@@ -7,10 +7,10 @@
 
 namespace tubetwin {
 
-/// The gripper of the twin, with the real one's register behaviour: position, speed and force are
-/// bytes; the fingers move at the set speed until they stand at the request (kAtPosition) or have
-/// pressed with the set force without moving (kContactClosing, kContactOpening); an object that is
-/// lost lets them move on to the request.
+/// The gripper of the twin, with the real one's register behaviour: position, speed and force come
+/// in steps; the fingers move at the set speed until they stand at the request (kAtPosition) or
+/// have pressed with the set force without moving (kContactClosing, kContactOpening); an object
+/// that is lost lets them move on to the request.
 class TwinGripper : public Gripper {
  public:
   /// `world` must outlive it; the force range of the grip actuator is its own to write.

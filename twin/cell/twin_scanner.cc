@@ -6,13 +6,12 @@
 
 namespace tubetwin {
 
-TwinScanner::TwinScanner(const ArmModel& arm_model, const CellWorld& world, const TwinArm& arm,
+TwinScanner::TwinScanner(const CellModel& model, const CellWorld& world, const TwinArm& arm,
                          Setup setup, RandomStream stream)
-    : arm_model_(arm_model), world_(world), arm_(arm), setup_(std::move(setup)), stream_(stream) {}
+    : model_(model), world_(world), arm_(arm), setup_(std::move(setup)), stream_(stream) {}
 
 RigidTransform TwinScanner::TrueX_BS() const {
-  return FlangePose(arm_model_, arm_.TruePosition()) * setup_.layout.X_FS *
-         setup_.physics.X_SbelievedS;
+  return PoseOfScanner(model_, arm_.TruePosition()) * setup_.physics.X_SbelievedS;
 }
 
 std::uint64_t TwinScanner::taken() const {
@@ -27,8 +26,7 @@ CommandResult TwinScanner::Trigger() {
   Shot shot;
   shot.geometry = world_.Geometry();
   shot.X_BS = TrueX_BS();
-  shot.X_NSBelieved =
-      setup_.bin.X_BN.inverse() * FlangePose(arm_model_, arm_.State().q) * setup_.layout.X_FS;
+  shot.X_NSBelieved = setup_.bin.X_BN.inverse() * PoseOfScanner(model_, arm_.State().q);
   shot.ready = world_.now() + FromSeconds(setup_.settings.spec.scan_time_s);
   shot.index = taken_++;
   shot_ = std::move(shot);

@@ -11,19 +11,18 @@
 namespace tubetwin {
 
 /// The scanner of the twin. A scan takes the device's time; what it shows is the world at the
-/// trigger, from the true pose (flange, hand-eye pose and its error). The cloud is cast when it is
-/// taken, so scans that nobody takes cost nothing.
+/// trigger, from the true pose (flange or stand, calibrated pose and its error). The cloud is cast
+/// when it is taken, so scans that nobody takes cost nothing.
 class TwinScanner : public Scanner {
  public:
   struct Setup {
-    CellLayout layout;
     Bin bin;
     RoundPhysics physics;
     ScanSettings settings;
     Parallelism parallelism;
   };
-  /// `arm_model`, `world` and `arm` must outlive it.
-  TwinScanner(const ArmModel& arm_model, const CellWorld& world, const TwinArm& arm, Setup setup,
+  /// `model`, `world` and `arm` must outlive it.
+  TwinScanner(const CellModel& model, const CellWorld& world, const TwinArm& arm, Setup setup,
               RandomStream stream);
 
   CommandResult Trigger() override;
@@ -48,7 +47,7 @@ class TwinScanner : public Scanner {
     std::uint64_t index = 0;
   };
 
-  const ArmModel& arm_model_;
+  const CellModel& model_;
   const CellWorld& world_;
   const TwinArm& arm_;
   Setup setup_;

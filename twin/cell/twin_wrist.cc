@@ -11,33 +11,24 @@
 namespace tubetwin {
 namespace {
 
-// Data sheet, Fx Fy Fz Tx Ty Tz: largest reading and one count.
-constexpr std::array<double, 6> kRange = {65.0, 65.0, 200.0, 5.0, 5.0, 5.0};
-constexpr double kForceCountXy_N = 1.0 / 80.0;
-constexpr double kForceCountZ_N = 1.0 / 40.0;
-constexpr double kTorqueCount_Nm = 10.0 / 13333.0;
-constexpr std::array<double, 6> kCount = {kForceCountXy_N, kForceCountXy_N, kForceCountZ_N,
-                                          kTorqueCount_Nm, kTorqueCount_Nm, kTorqueCount_Nm};
-
-/// One of the low-pass corners that the sensor's box offers.
-constexpr double kCorner_Hz = 73.0;
+constexpr int kFz = 2;
 /// The bias walk of the round's physics is given for this time.
 constexpr double kWalkTime_s = 600.0;
 
 }  // namespace
 
-WrenchChain::WrenchChain(const RoundPhysics& physics, RandomStream stream)
-    : stream_(stream.Fork("samples")), noise_counts_(physics.wrench_noise_counts) {
+WrenchChain::WrenchChain(const WristSpec& spec, const RoundPhysics& physics, RandomStream stream)
+    : spec_(spec), stream_(stream.Fork("samples")), noise_counts_(physics.wrench_noise_counts) {
   // The walk is given for z in newtons; other axes drift by as many counts.
   const double samples = kWalkTime_s / Seconds(kControlPeriod);
-  walk_counts_ = physics.wrench_bias_walk_N / kForceCountZ_N / std::sqrt(samples);
+  walk_counts_ = physics.wrench_bias_walk_N / spec_.count[kFz] / std::sqrt(samples);
   cross_talk_.setIdentity();
   RandomStream talk = stream.Fork("cross-talk");
   for (int to = 0; to < 6; ++to) {
     for (int from = 0; from < 6; ++from) {
       // Shares of full scale: a full reading of one axis shows as this share of another's.
       const double share = talk.Uniform(-physics.wrench_cross_talk, physics.wrench_cross_talk);
-      if (to != from) cross_talk_(to, from) = share * kRange[to] / kRange[from];
+      if (to != from) cross_talk_(to, from) = share * spec_.range[to] / spec_.range[from];
     }
   }
 }
@@ -46,7 +37,7 @@ WrenchSample WrenchChain::Next(const Wrench& load_K, TimeNs time) {
   Vector6 load;
   load << load_K.force_N, load_K.torque_Nm;
   const Vector6 mixed = cross_talk_ * load;
-  const double share = 1.0 - std::exp(-2.0 * kPi * kCorner_Hz * Seconds(kControlPeriod));
+  const double share = 1.0 - std::exp(-2.0 * kPi * spec_.corner_Hz * Seconds(kControlPeriod));
   filtered_ = first_ ? mixed : Vector6(filtered_ + share * (mixed - filtered_));
   first_ = false;
 
@@ -54,12 +45,13 @@ WrenchSample WrenchChain::Next(const Wrench& load_K, TimeNs time) {
   sample.time = time;
   Vector6 reading;
   for (int i = 0; i < 6; ++i) {
-    bias_[i] += stream_.Normal(0.0, walk_counts_ * kCount[i]);
-    const double noisy = filtered_[i] + bias_[i] + stream_.Normal(0.0, noise_counts_ * kCount[i]);
-    sample.saturated = sample.saturated || std::abs(noisy) > kRange[i];
-    const double counts = std::round(noisy / kCount[i]);
-    const double max_counts = std::floor(kRange[i] / kCount[i] + 1e-9);
-    reading[i] = kCount[i] * std::clamp(counts, -max_counts, max_counts);
+    bias_[i] += stream_.Normal(0.0, walk_counts_ * spec_.count[i]);
+    const double noisy =
+        filtered_[i] + bias_[i] + stream_.Normal(0.0, noise_counts_ * spec_.count[i]);
+    sample.saturated = sample.saturated || std::abs(noisy) > spec_.range[i];
+    const double counts = std::round(noisy / spec_.count[i]);
+    const double max_counts = std::floor(spec_.range[i] / spec_.count[i] + 1e-9);
+    reading[i] = spec_.count[i] * std::clamp(counts, -max_counts, max_counts);
   }
   sample.wrench_K.force_N = reading.head<3>();
   sample.wrench_K.torque_Nm = reading.tail<3>();
@@ -85,12 +77,13 @@ void WrenchChain::Restore(const JsonView& state) {
   first_ = false;
 }
 
-TwinWrist::TwinWrist(const CellWorld& world, const RoundPhysics& physics, RandomStream stream)
+TwinWrist::TwinWrist(const WristSpec& spec, const CellWorld& world, const RoundPhysics& physics,
+                     RandomStream stream)
     : world_(world),
       data_(world.data()),
       force_(world.model().sensor_adr[IdOf(world.model(), mjOBJ_SENSOR, kWristForce)]),
       torque_(world.model().sensor_adr[IdOf(world.model(), mjOBJ_SENSOR, kWristTorque)]),
-      chain_(physics, stream) {}
+      chain_(spec, physics, stream) {}
 
 Wrench TwinWrist::TrueLoad() const {
   return {-Vector3(data_.sensordata + force_), -Vector3(data_.sensordata + torque_)};

@@ -6,17 +6,17 @@
 #include "models/base/json_fwd.h"
 #include "models/base/random.h"
 #include "models/physics.h"
+#include "models/wrist_spec.h"
 #include "twin/cell/cell_world.h"
 
 namespace tubetwin {
 
-/// What stands between the forces in the wrist and the numbers that arrive, ATI Gamma SI-65-5:
-/// cross-talk, low-pass, slow bias walk, white noise, range, resolution. Pure: no engine, so tests
-/// feed it known wrenches. One call per millisecond; random numbers depend on the call's index
-/// only.
+/// What stands between the forces in the wrist and the numbers that arrive: cross-talk, low-pass,
+/// slow bias walk, white noise, range, resolution. Pure: no engine, so tests feed it known
+/// wrenches. One call per millisecond; random numbers depend on the call's index only.
 class WrenchChain {
  public:
-  WrenchChain(const RoundPhysics& physics, RandomStream stream);
+  WrenchChain(const WristSpec& spec, const RoundPhysics& physics, RandomStream stream);
 
   /// The next reading of a true load. `time` is only passed on.
   WrenchSample Next(const Wrench& load_K, TimeNs time);
@@ -28,6 +28,7 @@ class WrenchChain {
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   Eigen::Matrix<double, 6, 6> cross_talk_;
+  WristSpec spec_;
   RandomStream stream_;
   double noise_counts_, walk_counts_;
   Vector6 filtered_ = Vector6::Zero(), bias_ = Vector6::Zero();
@@ -40,7 +41,8 @@ class WrenchChain {
 class TwinWrist : public ForceTorqueSensor {
  public:
   /// `world` must outlive it.
-  TwinWrist(const CellWorld& world, const RoundPhysics& physics, RandomStream stream);
+  TwinWrist(const WristSpec& spec, const CellWorld& world, const RoundPhysics& physics,
+            RandomStream stream);
 
   WrenchSample Read() const override { return newest_; }
   /// Takes the sample of the step that has just been made (or of the world as it stands).

@@ -17,8 +17,7 @@ const std::vector<std::string>& CycleMoments::Names() {
   return names;
 }
 
-CycleMoments::CycleMoments(const ArmModel& model, const CellLayout& layout, const Bin& bin)
-    : model_(model), layout_(layout), bin_(bin) {}
+CycleMoments::CycleMoments(const CellModel& model, const Bin& bin) : model_(model), bin_(bin) {}
 
 std::vector<std::string> CycleMoments::After(const Look& look) {
   std::vector<std::string> out;
@@ -27,7 +26,7 @@ std::vector<std::string> CycleMoments::After(const Look& look) {
     ++counts_[name];
   };
   const Vector3 p_NE =
-      bin_.X_BN.inverse() * (FlangePose(model_, look.q) * layout_.X_FE).translation();
+      bin_.X_BN.inverse() * (FlangePose(model_.arm, look.q) * model_.layout.X_FE).translation();
   const bool low = p_NE.z() < bin_.wall_m() + kOverRim_m;
   const bool over_bin =
       std::abs(p_NE.x()) < bin_.half_x_m() && std::abs(p_NE.y()) < bin_.half_y_m();

@@ -8,7 +8,7 @@
 #include "models/arm/arm.h"
 #include "models/base/time.h"
 #include "models/bin.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 
 namespace tubetwin {
 
@@ -21,7 +21,7 @@ class CycleMoments {
   static const std::vector<std::string>& Names();
 
   /// `model` must outlive it.
-  CycleMoments(const ArmModel& model, const CellLayout& layout, const Bin& bin);
+  CycleMoments(const CellModel& model, const Bin& bin);
 
   /// What the devices show in one control period.
   struct Look {
@@ -36,8 +36,7 @@ class CycleMoments {
   int count(const std::string& name) const;
 
  private:
-  const ArmModel& model_;
-  CellLayout layout_;
+  const CellModel& model_;
   Bin bin_;
   Look last_;
   bool low_ = false, over_bin_ = true, held_ = false;

@@ -77,7 +77,7 @@ class DryGripper : public Gripper {
 
  private:
   const CellClock& clock_;
-  double from_m_ = 0.085, to_m_ = 0.085, speed_m_s_ = 0.1;
+  double from_m_, to_m_, speed_m_s_ = 0.1;
   TimeNs began_{0};
 };
 
@@ -87,8 +87,8 @@ struct DryRunCell::Impl {
   explicit Impl(Cell& real)
       : arm(real.clock, real.arm),
         gripper(real.clock, real.gripper),
-        cell{real.clock,     arm,         gripper,  real.wrist, real.scanner,
-             real.arm_model, real.layout, real.bin, real.safety} {}
+        cell{real.clock,   arm,        gripper,  real.wrist,
+             real.scanner, real.model, real.bin, real.safety} {}
   DryArm arm;
   DryGripper gripper;
   Cell cell;

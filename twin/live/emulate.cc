@@ -63,6 +63,9 @@ std::string CellFile(const EmulatedCell& cell, const Scenario& scenario, const P
   reaching.bin.size_m.assign(pile.bin.size_m.begin(), pile.bin.size_m.end());
   reaching.bin.mesh.clear();
   reaching.bin.mesh_units.clear();
+  // The file is read from another folder.
+  std::string& model = reaching.cell.model;
+  if (model.ends_with(".toml")) model = fs::absolute(model).string();
   reaching.part.name = scenario.pile.part.empty() && scenario.part.name.empty()
                            ? pile.part.name
                            : ScenarioPartName(scenario);

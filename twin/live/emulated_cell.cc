@@ -28,12 +28,14 @@ ArmEmulatorConfig ArmAt(const YaskawaConfig& arm, const EmulationPlaces& places)
   return config;
 }
 
-GripperEmulatorConfig GripperAt(const CellConfig& cell, const EmulationPlaces& places) {
+GripperEmulatorConfig GripperAt(const CellConfig& cell, const CellModel& model,
+                                const EmulationPlaces& places) {
   const RobotiqConfig& gripper = cell.gripper.drivers.Get<RobotiqDriver>().config;
   GripperEmulatorConfig config;
   config.listen = places.listen;
   config.port = places.any_ports ? 0 : gripper.port;
   config.slave = gripper.slave;
+  config.scale = ScaleOf(model.gripper);
   if (cell.gripper.driver == "modbus_rtu") {
     config.transport = "rtu";
     config.device = (fs::path(places.folder) / "gripper.tty").string();
@@ -62,7 +64,7 @@ std::unique_ptr<ScannerEmulator> ScannerAt(Scanner& scanner, const Scenario& sce
     config.path = ScanFolder(places);
     return std::make_unique<ScannerFolderEmulator>(scanner, config);
   }
-  const ScanSettings scan = ScenarioScan(scenario, RoundPhysics());
+  const ScanSettings scan = ScenarioScan(scenario, ScenarioModel(scenario), RoundPhysics());
   return std::make_unique<ScannerGigeEmulator>(
       scanner, ScannerGigeConfig{places.listen, scan.width, scan.height});
 }
@@ -74,13 +76,13 @@ struct EmulatedCell::Impl {
       : twin(of),
         scenario(given),
         places(at),
-        arm(io, twin.servo_arm(), twin.cell().arm_model,
+        arm(io, twin.servo_arm(), twin.cell().model.arm,
             ArmAt(given.cell.arm.drivers.Get<YaskawaDriver>().config, at)),
-        gripper(io, twin.cell().gripper, GripperAt(given.cell, at)),
+        gripper(io, twin.cell().gripper, GripperAt(given.cell, twin.cell().model, at)),
         wrist(io, twin.cell().wrist,
               WristAt(given.cell.wrist.drivers.Get<NetftDriver>().config, at)),
         scanner(ScannerAt(twin.cell().scanner, given, at)),
-        moments(twin.cell().arm_model, twin.cell().layout, twin.cell().bin) {}
+        moments(twin.cell().model, twin.cell().bin) {}
 
   void Look() {
     const bool moves = arm.controller().moving();

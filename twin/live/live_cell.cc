@@ -49,7 +49,7 @@ void RequireArmed(const Scenario& scenario) {
                   "writes armed = true into [cell.arm]; nothing was sent (see also --dry-run)");
 }
 
-DriverContext ScenarioContext(const Scenario& scenario, const ArmModel& model,
+DriverContext ScenarioContext(const Scenario& scenario, const CellModel& model,
                               const CellClock& clock, CellPurpose purpose,
                               const std::string& folder) {
   return {model, clock, scenario.rate, purpose == CellPurpose::kRun, folder, {}};
@@ -58,7 +58,7 @@ DriverContext ScenarioContext(const Scenario& scenario, const ArmModel& model,
 struct LiveCell::Impl {
   Impl(const Scenario& scenario, const std::string& scenario_folder, const std::string& cell_folder,
        CellPurpose purpose, Parallelism parallelism)
-      : devices(scenario.cell), clock(scenario.rate) {
+      : devices(scenario.cell), clock(scenario.rate), model(ScenarioModel(scenario)) {
     Bin bin;
     if (scenario.cell.HasTwin()) {
       const Pile asked = ScenarioPile(scenario, scenario_folder);
@@ -67,15 +67,14 @@ struct LiveCell::Impl {
       bin = pile.bin;
       twin.emplace(pile, ScenarioTwin(scenario, physics, parallelism));
     } else {
-      bin = ScenarioBin(scenario, Bin().size_m, cell_folder);
+      bin = ScenarioBin(scenario, std::nullopt, cell_folder);
     }
-    DriverContext context = ScenarioContext(scenario, Hc10(), clock, purpose, cell_folder);
+    DriverContext context = ScenarioContext(scenario, model, clock, purpose, cell_folder);
     if (devices.wrist.IsDevice()) wrist = devices.wrist.Connect(context);
     if (devices.arm.IsDevice()) arm = devices.arm.Connect(context);
     Arm& the_arm = arm ? *arm : twin->cell().arm;
-    context.believed_X_NS = [&the_arm, X_NB = RigidTransform(bin.X_BN.inverse()),
-                             X_FS = ScenarioLayout(scenario).X_FS] {
-      return RigidTransform(X_NB * FlangePose(Hc10(), the_arm.State().q) * X_FS);
+    context.believed_X_NS = [&the_arm, this, X_NB = RigidTransform(bin.X_BN.inverse())] {
+      return RigidTransform(X_NB * PoseOfScanner(model, the_arm.State().q));
     };
     if (devices.scanner.IsDevice()) scanner = devices.scanner.Connect(context);
     // Last: its activation moves the fingers, which none of the others does.
@@ -83,12 +82,13 @@ struct LiveCell::Impl {
     if (twin) clock.Keep(*twin);
     cell.emplace(Cell{clock, the_arm, gripper ? *gripper : twin->cell().gripper,
                       wrist ? *wrist : twin->cell().wrist,
-                      scanner ? *scanner : twin->cell().scanner, Hc10(), ScenarioLayout(scenario),
-                      bin, ScenarioSafety(scenario)});
+                      scanner ? *scanner : twin->cell().scanner, model, bin,
+                      ScenarioSafety(scenario)});
   }
 
   CellConfig devices;
   LiveClock clock;
+  CellModel model;
   std::optional<TwinCell> twin;
   std::unique_ptr<Arm> arm;
   std::unique_ptr<Gripper> gripper;

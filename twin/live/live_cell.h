@@ -17,7 +17,7 @@ enum class CellPurpose {
 
 /// What the drivers of the scenario's cell are connected with. `folder`: of relative paths in the
 /// cell file. For a scanner believed_X_NS is to be filled in. References are kept.
-DriverContext ScenarioContext(const Scenario& scenario, const ArmModel& model,
+DriverContext ScenarioContext(const Scenario& scenario, const CellModel& model,
                               const CellClock& clock, CellPurpose purpose,
                               const std::string& folder);
 

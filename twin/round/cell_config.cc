@@ -4,8 +4,8 @@
 
 #include "models/base/error.h"
 #include "models/base/frames.h"
-#include "models/layout.h"
 #include "models/mesh/mesh.h"
+#include "models/shape.h"
 
 namespace tubetwin {
 namespace {
@@ -16,11 +16,7 @@ std::vector<std::string> MeshUnitChoices() {
   return units;
 }
 
-std::vector<double> PoseNumbers(const RigidTransform& X_AB) {
-  const Vector3 p = X_AB.translation();
-  const std::array<double, 4> q = QuaternionWxyz(X_AB.linear());
-  return {p.x(), p.y(), p.z(), q[0], q[1], q[2], q[3]};
-}
+constexpr int kPoseNumbers = 7;  // x y z, quaternion w x y z
 
 /// Calls `see` with each of the four roles.
 template <class See>
@@ -62,6 +58,10 @@ void CellConfig::Scanner::Visit(ConfigVisitor& v) {
 }
 
 void CellConfig::Visit(ConfigVisitor& v) {
+  v.NameOrFile("model",
+               "what the cell is like: the name of a shipped cell model or the file of one; the "
+               "other keys say how to reach its devices",
+               model);
   v.Field("recording", "cell.rec.zst that devices with the driver replay answer from", recording);
   v.Section("arm", "the arm", arm);
   v.Section("gripper", "the gripper", gripper);
@@ -100,16 +100,37 @@ void CellConfig::ValidateOrThrow() const {
   });
 }
 
-CalibrationConfig::CalibrationConfig()
-    : X_FK(PoseNumbers(CellLayout().X_FK)),
-      X_FE(PoseNumbers(CellLayout().X_FE)),
-      X_FS(PoseNumbers(CellLayout().X_FS)) {}
-
 void CalibrationConfig::Visit(ConfigVisitor& v) {
-  v.Field("X_FK", "the sensor's tool face on the flange: x y z in metres, quaternion w x y z", X_FK,
-          7);
-  v.Field("X_FE", "the middle between the closed pads on the flange, likewise", X_FE, 7);
-  v.Field("X_FS", "the scanner's camera on the flange, likewise", X_FS, 7);
+  v.NumbersOrNone("X_FK",
+                  "the sensor's tool face on the flange: x y z in metres, quaternion w x y z; "
+                  "empty: the cell model's",
+                  X_FK, kPoseNumbers);
+  v.NumbersOrNone("X_FE", "the middle between the closed pads on the flange, likewise", X_FE,
+                  kPoseNumbers);
+  v.NumbersOrNone("X_FS", "the camera of a scanner on the flange, likewise", X_FS, kPoseNumbers);
+  v.NumbersOrNone("X_BS", "the camera of a scanner on a stand in the robot's base, likewise", X_BS,
+                  kPoseNumbers);
+}
+
+void CalibrationConfig::ApplyTo(CellLayout& layout) const {
+  const auto set = [](const char* key, const std::vector<double>& x, RigidTransform& pose) {
+    if (x.empty()) return;
+    pose = MakeTransform(UnitRotation({x[3], x[4], x[5], x[6]},
+                                      std::string("calibration.") + key + ": the quaternion"),
+                         Vector3(x[0], x[1], x[2]));
+  };
+  const bool flange = layout.scanner_mount == CellLayout::ScannerMount::kFlange;
+  if (!(flange ? X_BS : X_FS).empty()) {
+    throw Error(ErrorKind::kConfig,
+                flange ? "calibration.X_BS: is given, but the cell model's scanner hangs on the "
+                         "flange; its pose is X_FS"
+                       : "calibration.X_FS: is given, but the cell model's scanner is on a stand; "
+                         "its pose is X_BS");
+  }
+  set("X_FK", X_FK, layout.X_FK);
+  set("X_FE", X_FE, layout.X_FE);
+  set("X_FS", X_FS, layout.X_FS);
+  set("X_BS", X_BS, layout.X_BS);
 }
 
 }  // namespace tubetwin

@@ -65,7 +65,8 @@ struct CellConfig {
     ScannerEffects effects;
     void Visit(ConfigVisitor& v);
   } scanner;
-  std::string recording;  ///< What devices with the driver "replay" answer from.
+  std::string model = "leao2020";  ///< Cell model: a shipped one's name, or a file.
+  std::string recording;           ///< What devices with the driver "replay" answer from.
   SafetyLimits safety;
 
   void Visit(ConfigVisitor& v);
@@ -79,12 +80,18 @@ struct CellConfig {
   void ValidateOrThrow() const;
 };
 
-/// How the tools hang on the flange, table [calibration]: x y z in metres and the quaternion w x y
-/// z. On the twin the cell is built so; on a real cell it is what was measured.
+/// How tools and scanner hang, table [calibration]: x y z in metres and the quaternion w x y z;
+/// empty: the cell model's. On the twin the cell is built so; on a real cell it is what was
+/// measured.
 struct CalibrationConfig {
-  std::vector<double> X_FK, X_FE, X_FS;
-  CalibrationConfig();
+  std::vector<double> X_FK, X_FE;
+  std::vector<double> X_FS;  ///< Of a scanner on the flange.
+  std::vector<double> X_BS;  ///< Of one on a stand.
+
   void Visit(ConfigVisitor& v);
+  /// Throws Error(kConfig) for a quaternion that is not of length one, and for a pose of a scanner
+  /// that hangs elsewhere.
+  void ApplyTo(CellLayout& layout) const;
 };
 
 }  // namespace tubetwin

@@ -116,7 +116,8 @@ ReplayResult ReplayRound(const std::string& recording_path, const ReplayOptions&
   const CellRecordingHeader& header = replay.header();
   const Scenario scenario = RecordedScenario(header, recording_path);
   replay.cell().safety = ScenarioSafety(scenario);
-  const PickCycleSetup setup = ScenarioCycle(scenario, header.part, options.parallelism);
+  const PickCycleSetup setup =
+      ScenarioCycle(scenario, header.model, header.part, options.parallelism);
   ReplayObserver observer(replay, options, result);
   try {
     RoundReport report;

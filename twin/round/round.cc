@@ -58,7 +58,8 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
   WriteFileAtomically((out / "config.resolved.toml").string(), pipeline.resolved_toml);
   fs::remove_all(out / "failures");
   fs::remove(out / kCellRecordingFile);
-  PickCycleSetup setup = ScenarioCycle(pipeline.scenario, pipeline.part, options.parallelism);
+  PickCycleSetup setup =
+      ScenarioCycle(pipeline.scenario, plain.model, pipeline.part, options.parallelism);
   setup.stop_requested = options.stop_requested;
   setup.acknowledge = options.acknowledge;
   std::optional<CellRecorder> cell_recorder;

@@ -66,8 +66,9 @@ void RoundRecorder::SaveFailure() {
 TwinRoundRecorder::TwinRoundRecorder(TwinCell& twin, const Pile& pile,
                                      std::vector<Recording::Visual> visuals,
                                      const RoundOptions& options)
-    : RoundRecorder(RoundScorer(twin, twin.cell().layout, static_cast<int>(pile.tubes.size())),
-                    options),
+    : RoundRecorder(
+          RoundScorer(twin, twin.cell().model.layout, static_cast<int>(pile.tubes.size())),
+          options),
       twin_(twin) {
   recording_.cell_xml = twin.ModelXml();
   recording_.bin = pile.bin;

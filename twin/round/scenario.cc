@@ -20,6 +20,37 @@ std::vector<std::string> MeshUnitChoices() {
   return units;
 }
 
+RigidTransform PoseOfBin(const std::vector<double>& x) {
+  return MakeTransform(RotZ(Radians(x[3])), Vector3(x[0], x[1], x[2]));
+}
+
+std::vector<double> PoseNumbers(const RigidTransform& X) {
+  const Vector3& p = X.translation();
+  const auto q = QuaternionWxyz(X.linear());
+  return {p.x(), p.y(), p.z(), q[0], q[1], q[2], q[3]};
+}
+
+/// What the configuration leaves to the cell model, so that the resolved one says it.
+void FillFromModel(Scenario& scenario) {
+  const CellModel model = LoadCellModel(scenario.cell.model);
+  const CellLayout& layout = model.layout;
+  const auto fill = [](std::vector<double>& x, const std::vector<double>& from) {
+    if (x.empty()) x = from;
+  };
+  CalibrationConfig& calibration = scenario.calibration;
+  fill(calibration.X_FK, PoseNumbers(layout.X_FK));
+  fill(calibration.X_FE, PoseNumbers(layout.X_FE));
+  const bool flange = layout.scanner_mount == CellLayout::ScannerMount::kFlange;
+  if (flange && calibration.X_BS.empty()) fill(calibration.X_FS, PoseNumbers(layout.X_FS));
+  if (!flange && calibration.X_FS.empty()) fill(calibration.X_BS, PoseNumbers(layout.X_BS));
+  const Vector3& p_BN = layout.X_BN.translation();
+  const double yaw_rad = std::atan2(layout.X_BN.linear()(1, 0), layout.X_BN.linear()(0, 0));
+  fill(scenario.bin.X_BN, {p_BN.x(), p_BN.y(), p_BN.z(), Degrees(yaw_rad)});
+  if (scenario.scan.resolution.empty()) {
+    scenario.scan.resolution = model.scanner.resolutions.front();
+  }
+}
+
 struct BinMesh {
   Mesh mesh;  ///< Metres.
   MeshBin found;
@@ -52,11 +83,14 @@ void Scenario::PileConfig::Visit(ConfigVisitor& v) {
 }
 
 void Scenario::BinConfig::Visit(ConfigVisitor& v) {
-  v.Field("size_m", "long, short, wall height in metres; empty: the pile's, else 0.77 0.58 0.09",
+  v.Field("size_m", "long, short, wall height in metres; empty: the pile's, else the cell model's",
           size_m, 0, {0.01, 3.0});
   v.Field("mesh", "STL, OBJ or PLY of the bin, z upwards: gives size_m and looks", mesh);
   v.Choice("mesh_units", "unit of the mesh; empty: metres", mesh_units, MeshUnitChoices());
-  v.Field("X_BN", "floor centre x y z in metres and yaw in degrees, in the robot's base", X_BN, 4);
+  v.NumbersOrNone("X_BN",
+                  "floor centre x y z in metres and yaw in degrees, in the robot's base; empty: "
+                  "the cell model's",
+                  X_BN, 4);
 }
 
 void Scenario::PartConfig::Visit(ConfigVisitor& v) {
@@ -88,20 +122,11 @@ std::string ScenarioPartName(const Scenario& scenario) {
   return scenario.part.name.empty() ? "pvc_a" : scenario.part.name;
 }
 
-CellLayout ScenarioLayout(const Scenario& scenario) {
-  const auto pose = [](const char* key, const std::vector<double>& x) {
-    if (Eigen::Vector4d(x[3], x[4], x[5], x[6]).norm() < 1e-6) {
-      throw Error(ErrorKind::kConfig, std::string("calibration.") + key +
-                                          ": the quaternion is zero; w x y z of length one is "
-                                          "needed, as in [0, 0, 0.033, 1, 0, 0, 0]");
-    }
-    return MakeTransform(RotationFromWxyz(x[3], x[4], x[5], x[6]), Vector3(x[0], x[1], x[2]));
-  };
-  CellLayout layout;
-  layout.X_FK = pose("X_FK", scenario.calibration.X_FK);
-  layout.X_FE = pose("X_FE", scenario.calibration.X_FE);
-  layout.X_FS = pose("X_FS", scenario.calibration.X_FS);
-  return layout;
+CellModel ScenarioModel(const Scenario& scenario) {
+  CellModel model = LoadCellModel(scenario.cell.model);
+  scenario.calibration.ApplyTo(model.layout);
+  if (!scenario.bin.X_BN.empty()) model.layout.X_BN = PoseOfBin(scenario.bin.X_BN);
+  return model;
 }
 
 SafetyLimits ScenarioSafety(const Scenario& scenario) {
@@ -130,19 +155,21 @@ RoundPhysics ScenarioPhysics(const Scenario& scenario, const Part& part) {
                      RandomStream(static_cast<std::uint64_t>(scenario.seed), 0, "physics"));
 }
 
-ScanSettings ScenarioScan(const Scenario& scenario, const RoundPhysics& physics) {
+ScanSettings ScenarioScan(const Scenario& scenario, const CellModel& model,
+                          const RoundPhysics& physics) {
   ScanSettings settings;
-  if (scenario.scan.resolution == "2064x1544") {
-    settings.width = settings.spec.full_width;
-    settings.height = settings.spec.full_height;
-  }
+  const ScanSize size = SizeOfScan(model.scanner, scenario.scan.resolution);
+  settings.width = size.width;
+  settings.height = size.height;
+  settings.spec = model.scanner;
   settings.effects = scenario.cell.scanner.effects;
   settings.noise_scale = physics.depth_noise_scale;
   settings.bias_seed = static_cast<std::uint64_t>(scenario.seed);
   return settings;
 }
 
-PickCycleSetup ScenarioCycle(const Scenario& scenario, const Part& part, Parallelism parallelism) {
+PickCycleSetup ScenarioCycle(const Scenario& scenario, const CellModel& model, const Part& part,
+                             Parallelism parallelism) {
   PickCycleSetup setup;
   setup.part = part;
   setup.perception = scenario.perception;
@@ -151,8 +178,7 @@ PickCycleSetup ScenarioCycle(const Scenario& scenario, const Part& part, Paralle
   setup.resolution = scenario.resolution;
   setup.cycle = scenario.cycle;
   setup.seed = static_cast<std::uint64_t>(scenario.seed);
-  setup.evaluate = MakeEvaluator(
-      {parallelism, scenario.evaluator, MakeGripperGeometry(Hc10(), ScenarioLayout(scenario))});
+  setup.evaluate = MakeEvaluator({parallelism, scenario.evaluator, MakeGripperGeometry(model)});
   setup.parallelism = parallelism;
   return setup;
 }
@@ -191,13 +217,15 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
                     "; only 0 is allowed in the profile leao2020: the paper pushes no tube");
   }
   scenario.profile = chosen;
+  FillFromModel(scenario);
   return scenario;
 }
 
-Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m,
+Bin ScenarioBin(const Scenario& scenario, const std::optional<std::array<double, 3>>& pile_size_m,
                 const std::string& folder) {
+  const CellLayout layout = LoadCellModel(scenario.cell.model).layout;
   Bin bin;
-  bin.size_m = pile_size_m;
+  bin.size_m = pile_size_m.value_or(layout.bin_size_m);
   if (!scenario.bin.size_m.empty()) {
     if (scenario.bin.size_m.size() != 3) {
       throw Error(ErrorKind::kConfig,
@@ -213,8 +241,7 @@ Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size
     }
     bin.size_m = BinOfMesh(scenario, folder).found.size_m;
   }
-  const auto& x = scenario.bin.X_BN;
-  bin.X_BN = MakeTransform(RotZ(Radians(x[3])), Vector3(x[0], x[1], x[2]));
+  bin.X_BN = scenario.bin.X_BN.empty() ? layout.X_BN : PoseOfBin(scenario.bin.X_BN);
   return bin;
 }
 
@@ -223,7 +250,8 @@ std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario,
   std::vector<Recording::Visual> visuals;
   if (!scenario.bin.mesh.empty()) {
     BinMesh bin = BinOfMesh(scenario, folder);
-    const RigidTransform X_BM = ScenarioBin(scenario, {}, folder).X_BN * bin.found.X_MN.inverse();
+    const RigidTransform X_BM =
+        ScenarioBin(scenario, std::nullopt, folder).X_BN * bin.found.X_MN.inverse();
     for (Vector3& v : bin.mesh.vertices) v = X_BM * v;
     visuals.push_back({"world", {"bin_floor", "bin_wall_"}, std::move(bin.mesh)});
   }
@@ -267,7 +295,7 @@ Pile AskedPile(const Scenario& scenario, const std::string& folder) {
     overrides.part = ScenarioPartName(scenario);
   }
   if (!scenario.bin.size_m.empty() || !scenario.bin.mesh.empty()) {
-    overrides.bin_size_m = ScenarioBin(scenario, {}, folder).size_m;
+    overrides.bin_size_m = ScenarioBin(scenario, std::nullopt, folder).size_m;
   }
   Pile pile = LoadPile(PathIn(folder, scenario.pile.file), overrides);
   pile.bin = ScenarioBin(scenario, pile.bin.size_m, folder);
@@ -277,7 +305,7 @@ Pile AskedPile(const Scenario& scenario, const std::string& folder) {
 Pile ScenarioPile(const Scenario& scenario, const std::string& folder) {
   if (!scenario.pile.file.empty()) return AskedPile(scenario, folder);
   const Part part = LoadPart(ScenarioPartName(scenario));
-  const Bin bin = ScenarioBin(scenario, Bin().size_m, folder);
+  const Bin bin = ScenarioBin(scenario, std::nullopt, folder);
   const RoundPhysics physics = ScenarioPhysics(scenario, part);
   SettleResult made = GeneratePile(part, bin, scenario.pile.count, scenario.pile.arrangement,
                                    static_cast<std::uint64_t>(scenario.seed), physics);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "models/base/config/config.h"
-#include "models/layout.h"
+#include "models/cell_model.h"
 #include "models/physics.h"
 #include "planner/cycle/pick_cycle.h"
 #include "planner/evaluator/evaluator.h"
@@ -31,10 +31,11 @@ struct Scenario {
   } pile;
 
   struct BinConfig {
-    std::vector<double> size_m;  ///< Empty: what the pile file says, else 0.77 x 0.58 x 0.09.
+    std::vector<double> size_m;  ///< Empty: what the pile file says, else the cell model's.
     std::string mesh;            ///< Gives size_m, and the bin's looks in pictures; empty: none.
     std::string mesh_units;      ///< As ScaleToMetres takes it.
-    std::vector<double> X_BN = {0.60, 0.0, 0.10, 90.0};  ///< x, y, z in metres, yaw in degrees.
+    /// x, y, z in metres, yaw in degrees; empty: the cell model's.
+    std::vector<double> X_BN;
     void Visit(ConfigVisitor& v);
   } bin;
 
@@ -62,9 +63,9 @@ struct Scenario {
 /// Name or file of the part where no pile file says it: of [pile], else [part], else "pvc_a".
 std::string ScenarioPartName(const Scenario& scenario);
 
-/// The cell's layout with the scenario's calibration. Throws Error(kConfig) for a quaternion of
-/// length zero.
-CellLayout ScenarioLayout(const Scenario& scenario);
+/// The scenario's cell model with its calibration and the place of its bin. Throws as LoadCellModel
+/// does, and Error(kConfig) for calibration that does not fit it.
+CellModel ScenarioModel(const Scenario& scenario);
 
 /// What stops the arm of the scenario's cell, at its rate; a real arm starts at reduced speed.
 SafetyLimits ScenarioSafety(const Scenario& scenario);
@@ -76,10 +77,12 @@ void RequireTwin(const Scenario& scenario, const std::string& who);
 RoundPhysics ScenarioPhysics(const Scenario& scenario, const Part& part);
 
 /// How the scenario's scanner sees, without labels, for a round with that physics.
-ScanSettings ScenarioScan(const Scenario& scenario, const RoundPhysics& physics);
+ScanSettings ScenarioScan(const Scenario& scenario, const CellModel& model,
+                          const RoundPhysics& physics);
 
-/// The pick cycle of the scenario for a part; nothing in it depends on the cell.
-PickCycleSetup ScenarioCycle(const Scenario& scenario, const Part& part, Parallelism parallelism);
+/// The pick cycle of the scenario for a part in a cell.
+PickCycleSetup ScenarioCycle(const Scenario& scenario, const CellModel& model, const Part& part,
+                             Parallelism parallelism);
 
 /// Names of the pipeline's profiles.
 const std::vector<std::string>& PipelineProfiles();
@@ -90,10 +93,10 @@ const std::vector<std::string>& PipelineProfiles();
 /// layers say; empty: it does not. Throws as ConfigSource::ReadInto.
 Scenario ReadScenario(const ConfigSource& source, const std::string& profile = "");
 
-/// The bin of the scenario for a pile that says `pile_size_m`. `folder`: what relative file names
-/// refer to. Throws Error(kConfig) when both size and mesh are given, Error(kBadData) saying why a
-/// mesh is no bin, and as ReadMesh does.
-Bin ScenarioBin(const Scenario& scenario, const std::array<double, 3>& pile_size_m,
+/// The bin of the scenario for a pile that says `pile_size_m`; the cell model's where none does.
+/// `folder`: what relative file names refer to. Throws Error(kConfig) when both size and mesh are
+/// given, Error(kBadData) saying why a mesh is no bin, and as ReadMesh does.
+Bin ScenarioBin(const Scenario& scenario, const std::optional<std::array<double, 3>>& pile_size_m,
                 const std::string& folder);
 
 /// The scenario's meshes for pictures. Throws as ScenarioBin does, and Error(kConfig) for more

@@ -20,10 +20,10 @@ Pile StartPile(const Scenario& scenario, const Pile& asked, const RoundPhysics& 
 TwinCellOptions ScenarioTwin(const Scenario& scenario, const RoundPhysics& physics,
                              Parallelism parallelism) {
   TwinCellOptions options;
-  options.layout = ScenarioLayout(scenario);
+  options.model = ScenarioModel(scenario);
   options.physics = physics;
   options.seed = static_cast<std::uint64_t>(scenario.seed);
-  options.scan = ScenarioScan(scenario, physics);
+  options.scan = ScenarioScan(scenario, options.model, physics);
   options.parallelism = parallelism;
   return options;
 }

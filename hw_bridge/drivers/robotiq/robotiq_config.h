@@ -2,11 +2,12 @@
 
 #include <string>
 
+#include "hw_bridge/codecs/robotiq_registers.h"
 #include "models/base/config/config.h"
 
 namespace tubetwin {
 
-/// How to reach a Robotiq 2F-85: `[cell.gripper]` of a cell file.
+/// How to reach a Robotiq 2F gripper: `[cell.gripper]` of a cell file.
 struct RobotiqConfig {
   /// "tcp" or "rtu": the cell file's drivers modbus_tcp, modbus_rtu.
   std::string transport = "tcp";
@@ -19,6 +20,9 @@ struct RobotiqConfig {
   /// Activate the gripper when it is not: its fingers then open and close. Not visited: doctor, who
   /// moves nothing, goes without.
   bool activate = true;
+
+  /// Figures of the cell's gripper. Not visited.
+  GripperScale scale;
 
   /// Not `transport`, which the key `driver` says.
   void Visit(ConfigVisitor& v);

@@ -10,6 +10,11 @@ constexpr const char* kRtu = "modbus_rtu";
 
 }  // namespace
 
+GripperScale ScaleOf(const GripperSpec& gripper) {
+  return {gripper.stroke_m, gripper.min_speed_m_s, gripper.max_speed_m_s, gripper.min_force_N,
+          gripper.max_force_N};
+}
+
 std::unique_ptr<DeviceDriver<Gripper>> RobotiqDriver::Clone() const {
   return std::make_unique<RobotiqDriver>(*this);
 }
@@ -19,7 +24,9 @@ std::vector<DriverLink> RobotiqDriver::Links() const {
   return {{kRtu, fix, ""}, {"modbus_tcp", fix, ""}};
 }
 
-std::string RobotiqDriver::Summary() const { return "a Robotiq 2F-85 by serial line or network"; }
+std::string RobotiqDriver::Summary() const {
+  return "a Robotiq 2F-85 or 2F-140 by serial line or network";
+}
 
 void RobotiqDriver::Visit(ConfigVisitor& v) { config.Visit(v); }
 
@@ -28,6 +35,7 @@ std::unique_ptr<Gripper> RobotiqDriver::Connect(const std::string& link,
   RobotiqConfig used = config;
   used.transport = link == kRtu ? "rtu" : "tcp";
   used.rate = context.rate;
+  used.scale = ScaleOf(context.model.gripper);
   used.activate = context.may_move;
   return std::make_unique<RobotiqGripper>(used, context.clock);
 }

@@ -5,6 +5,9 @@
 
 namespace tubetwin {
 
+/// What the registers of such a gripper mean.
+GripperScale ScaleOf(const GripperSpec& gripper);
+
 /// [cell.gripper] driver = "modbus_rtu" or "modbus_tcp": see RobotiqGripper.
 class RobotiqDriver : public DeviceDriver<Gripper> {
  public:

@@ -131,12 +131,12 @@ void RobotiqGripper::Command(const GripperCommand& command) {
     const std::lock_guard lock(mutex_);
     action_ = GripperAction();
     action_.activate = action_.go_to = true;
-    action_.position = scale_.PositionOf(command.opening_m);
-    action_.speed = scale_.SpeedOf(command.speed_m_s);
-    action_.force = scale_.ForceOf(command.force_N);
+    action_.position = config_.scale.PositionOf(command.opening_m);
+    action_.speed = config_.scale.SpeedOf(command.speed_m_s);
+    action_.force = config_.scale.ForceOf(command.force_N);
     fresh_ = pending_ = unsettled_ = ever_ = true;
     state_.object = GripperObject::kMoving;
-    state_.requested_m = scale_.OpeningOf(action_.position);
+    state_.requested_m = config_.scale.OpeningOf(action_.position);
   }
   commanded_.notify_one();
 }
@@ -219,11 +219,11 @@ void RobotiqGripper::Take(const GripperStatus& status) {
   const std::lock_guard lock(mutex_);
   state_.time = now;
   state_.activated = status.activate && status.activation == GripperActivation::kDone;
-  state_.opening_m = scale_.OpeningOf(status.position);
+  state_.opening_m = config_.scale.OpeningOf(status.position);
   state_.fault = status.fault;
   if (!ever_) {
     state_.requested_m =
-        status.go_to ? scale_.OpeningOf(status.position_request) : state_.opening_m;
+        status.go_to ? config_.scale.OpeningOf(status.position_request) : state_.opening_m;
     state_.object = status.go_to ? ObjectOf(status.motion) : GripperObject::kAtPosition;
     return;
   }

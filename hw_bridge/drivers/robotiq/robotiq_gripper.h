@@ -16,8 +16,8 @@ namespace tubetwin {
 
 class ModbusClient;
 
-/// A Robotiq 2F-85 by Modbus RTU or TCP. A thread of its own polls it 100 times per second of cell
-/// time (500 of wall time at most); the methods only take a lock. Never sends what nobody has
+/// A Robotiq 2F gripper by Modbus RTU or TCP. A thread of its own polls it 100 times per second of
+/// cell time (500 of wall time at most); the methods only take a lock. Never sends what nobody has
 /// commanded: faults and the destructor leave the fingers as they are.
 ///
 /// State().time is when the newest status came. A request is kMoving until the gripper has told
@@ -54,7 +54,6 @@ class RobotiqGripper : public Gripper {
 
   RobotiqConfig config_;
   const CellClock& clock_;
-  GripperScale scale_;
   std::unique_ptr<ModbusClient> client_;                   ///< Of the thread, once it runs.
   std::chrono::steady_clock::time_point heard_, written_;  ///< Of the thread.
 

@@ -27,7 +27,7 @@ std::unique_ptr<Arm> YaskawaDriver::Connect(const std::string&,
   YaskawaConfig used = config;
   used.armed = context.may_move;
   used.rate = context.rate;
-  return std::make_unique<YaskawaArm>(used, context.arm_model, context.clock);
+  return std::make_unique<YaskawaArm>(used, context.model.arm, context.clock);
 }
 
 }  // namespace tubetwin

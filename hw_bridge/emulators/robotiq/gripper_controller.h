@@ -9,13 +9,14 @@
 
 namespace tubetwin {
 
-/// The controller of a Robotiq 2F-85: reads commands from its registers, moves the fingers of any
-/// Gripper, writes states. Activation opens, closes and opens the fingers. No fault opens them:
+/// The controller of a Robotiq 2F gripper: reads commands from its registers, moves the fingers of
+/// any Gripper, writes states. Activation opens, closes and opens the fingers. No fault opens them:
 /// fingers that move outwards stop, fingers that press keep pressing.
 class GripperController : public ModbusRegisters {
  public:
   /// `gripper` must outlive it.
-  explicit GripperController(Gripper& gripper) : gripper_(gripper) {}
+  GripperController(Gripper& gripper, const GripperScale& scale)
+      : gripper_(gripper), scale_(scale) {}
 
   // Of a client: three registers from 0x03E8 to write and read, three from 0x07D0 to read.
   bool IsReadable(int start, int count) const override;

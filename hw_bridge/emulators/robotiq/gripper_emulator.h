@@ -20,10 +20,11 @@ struct GripperEmulatorConfig {
   int port = 1502;     ///< tcp; 0: any free port.
   std::string device;  ///< rtu: link to the pseudo-terminal that is made; empty: no link.
   int slave = 9;
+  GripperScale scale;  ///< What its registers mean.
 };
 
-/// A Robotiq 2F-85 on Modbus TCP, or on Modbus RTU over a pseudo-terminal, with the fingers of any
-/// Gripper. Everything happens in Tick().
+/// A Robotiq 2F gripper on Modbus TCP, or on Modbus RTU over a pseudo-terminal, with the fingers of
+/// any Gripper. Everything happens in Tick().
 class GripperEmulator : public Emulator {
  public:
   /// `gripper` and `io` must outlive it. Throws Error(kDevice) when the port or the device's name

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "models/base/config/config_entries.h"
@@ -100,6 +101,12 @@ const std::vector<Node>& ReadList(const Node& node, const std::string& path,
   return *list;
 }
 
+/// A file that a layer names, from the working directory.
+std::string FileOf(const Node& node, const std::string& file) {
+  if (file.empty() || node.folder.empty()) return file;
+  return (std::filesystem::path(node.folder) / file).lexically_normal().string();
+}
+
 std::string ItemPath(const std::string& path, std::size_t index) {
   return path + "[" + std::to_string(index) + "]";
 }
@@ -170,6 +177,28 @@ class Reader : public ConfigVisitor {
     }
     value = std::move(read);
   }
+  void NumbersOrNone(const char* key, const char* doc, std::vector<double>& value, int count,
+                     Range allowed) override {
+    const Node* node = Get(key);
+    if (node == nullptr) return;
+    const bool none = ReadList(*node, Path(key), "numbers").empty();
+    Field(key, doc, value, none ? 0 : count, allowed);
+  }
+  void File(const char* key, const char*, std::string& value) override {
+    if (const Node* node = Get(key)) value = FileOf(*node, ReadText(*node, Path(key)));
+  }
+  void NameOrFile(const char* key, const char*, std::string& value) override {
+    const Node* node = Get(key);
+    if (node == nullptr) return;
+    value = ReadText(*node, Path(key));
+    if (value.ends_with(".toml")) value = FileOf(*node, value);
+  }
+  void Files(const char* key, const char* doc, std::vector<std::string>& value) override {
+    const Node* node = Get(key);
+    if (node == nullptr) return;
+    Field(key, doc, value);
+    for (std::string& file : value) file = FileOf(*node, file);
+  }
   void Section(const char* key, const char*,
                const std::function<void(ConfigVisitor&)>& visit) override {
     const Node* node = Get(key);
@@ -195,7 +224,10 @@ ConfigSource::~ConfigSource() = default;
 ConfigSource::ConfigSource(ConfigSource&&) noexcept = default;
 ConfigSource& ConfigSource::operator=(ConfigSource&&) noexcept = default;
 
-void ConfigSource::AddFile(const std::string& path) { AddText(ReadFile(path), path); }
+void ConfigSource::AddFile(const std::string& path) {
+  Merge(impl_->layers,
+        config_internal::ParseLayer(ReadFile(path), path, std::filesystem::path(path).parent_path().string()));
+}
 
 void ConfigSource::AddText(const std::string& toml, const std::string& name) {
   Merge(impl_->layers, config_internal::ParseLayer(toml, name));

@@ -35,6 +35,24 @@ class ConfigVisitor {
   virtual void Field(const char* key, const char* doc, std::vector<double>& value, int count = 0,
                      Range allowed = {}) = 0;
   virtual void Field(const char* key, const char* doc, std::vector<std::string>& value) = 0;
+  /// `count` numbers, or none: an empty list.
+  virtual void NumbersOrNone(const char* key, const char* doc, std::vector<double>& value,
+                             int /*count*/, Range allowed = {}) {
+    Field(key, doc, value, 0, allowed);
+  }
+  /// The name of a file. One that is relative in a file is relative to that file's folder, one of
+  /// an override to the working directory; what is read is relative to the working directory.
+  virtual void File(const char* key, const char* doc, std::string& value) {
+    Field(key, doc, value);
+  }
+  /// A name, or a file as above when it ends in ".toml".
+  virtual void NameOrFile(const char* key, const char* doc, std::string& value) {
+    Field(key, doc, value);
+  }
+  /// Files as above; empty texts stay empty.
+  virtual void Files(const char* key, const char* doc, std::vector<std::string>& value) {
+    Field(key, doc, value);
+  }
   /// A table below this one.
   virtual void Section(const char* key, const char* doc,
                        const std::function<void(ConfigVisitor&)>& visit) = 0;

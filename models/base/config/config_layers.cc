@@ -76,6 +76,15 @@ void SetPlace(Node& node, const std::string& place) {
   }
 }
 
+void SetFolder(Node& node, const std::string& folder) {
+  node.folder = folder;
+  if (auto* items = std::get_if<std::vector<Node>>(&node.value)) {
+    for (Node& item : *items) SetFolder(item, folder);
+  } else if (auto* table = std::get_if<Node::Table>(&node.value)) {
+    for (auto& [key, below] : *table) SetFolder(below, folder);
+  }
+}
+
 }  // namespace
 
 const Node* Find(const Node::Table& table, const std::string& key) {
@@ -99,9 +108,12 @@ void Merge(Node::Table& below, Node::Table top) {
   }
 }
 
-Node::Table ParseLayer(const std::string& toml, const std::string& name) {
+Node::Table ParseLayer(const std::string& toml, const std::string& name,
+                       const std::string& folder) {
   try {
-    return TableFromToml(toml::parse(toml, name), name);
+    Node::Table table = TableFromToml(toml::parse(toml, name), name);
+    for (auto& [key, node] : table) SetFolder(node, folder);
+    return table;
   } catch (const toml::parse_error& e) {
     throw Error(ErrorKind::kConfig,
                 Place(name, e.source()) + ": not valid TOML: " + std::string(e.description()));

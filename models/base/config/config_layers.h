@@ -23,6 +23,7 @@ struct Node {
   std::string key_place;  ///< Of the key, where that differs.
   std::string raw;        ///< What a person typed after `--set a.b=`; empty for files.
   bool from_override = false;
+  std::string folder;  ///< Of the file that it stands in; empty: none, or the working directory.
 };
 
 struct Node::Member {
@@ -35,8 +36,9 @@ const Node* Find(const Node::Table& table, const std::string& key);
 /// `top` wins; tables are merged key by key, anything else is replaced whole.
 void Merge(Node::Table& below, Node::Table top);
 
-/// Throws Error(kConfig) with place for bad syntax.
-Node::Table ParseLayer(const std::string& toml, const std::string& name);
+/// Throws Error(kConfig) with place for bad syntax. `folder`: of the file, for files that it names.
+Node::Table ParseLayer(const std::string& toml, const std::string& name,
+                       const std::string& folder = "");
 
 /// "a.b=value" as a layer. Throws Error(kUsage) for what is no KEY=VALUE.
 Node::Table ParseOverride(const std::string& text);

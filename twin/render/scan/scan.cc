@@ -20,8 +20,6 @@ namespace {
 constexpr int kBandRows = 8;  // Work unit of a thread: whole ray packets.
 static_assert(kBandRows % HitImage::kPacketSide == 0);
 
-constexpr float kFarHalf_m = 0.900f, kFarWidth_m = 0.060f;
-constexpr float kNearHalf_m = 0.340f, kNearWidth_m = 0.015f;
 constexpr float kGrazingHalf_deg = 75.0f, kGrazingWidth_deg = 3.0f;
 constexpr float kGrazingFrom_deg = 45.0f;  // Below it the drop-out is under 0.005 %.
 constexpr float kSteepestSigma_deg = 80.0f;
@@ -70,7 +68,11 @@ class Former {
         hits_(hits),
         surfaces_(SurfacesOf(geometry)),
         sweet_spot_m_(static_cast<float>(settings.spec.sweet_spot_m)),
-        sigma_m_(static_cast<float>(settings.spec.sigma_m * settings.noise_scale)) {
+        sigma_m_(static_cast<float>(settings.spec.sigma_m * settings.noise_scale)),
+        far_half_m_(static_cast<float>(settings.spec.far_half_m)),
+        far_width_m_(static_cast<float>(settings.spec.far_width_m)),
+        near_half_m_(static_cast<float>(settings.spec.near_half_m)),
+        near_width_m_(static_cast<float>(settings.spec.near_width_m)) {
     const ScannerSpec& spec = settings.spec;
     z_min_m_ = static_cast<float>(effects_.hard_range ? spec.range_min_m : spec.soft_min_m);
     z_max_m_ = static_cast<float>(effects_.hard_range ? spec.range_max_m : spec.soft_max_m);
@@ -156,9 +158,9 @@ class Former {
     float keep = 1.0f - gleam;
     if (effects_.soft_range) {
       if (z > settings_.spec.range_max_m) {
-        keep *= 1.0f - Logistic((kFarHalf_m - z) / kFarWidth_m);
+        keep *= 1.0f - Logistic((far_half_m_ - z) / far_width_m_);
       } else if (z < settings_.spec.range_min_m) {
-        keep *= 1.0f - Logistic((z - kNearHalf_m) / kNearWidth_m);
+        keep *= 1.0f - Logistic((z - near_half_m_) / near_width_m_);
       }
     }
     const float steepest = std::min(hits_.cos_camera[at], cos_projector);
@@ -234,6 +236,7 @@ class Former {
   const HitImage& hits_;
   const std::vector<Surface> surfaces_;
   const float sweet_spot_m_, sigma_m_;
+  const float far_half_m_, far_width_m_, near_half_m_, near_width_m_;
   const float cos_steepest_ = CosDeg(kSteepestSigma_deg);
   const float cos_grazing_from_ = CosDeg(kGrazingFrom_deg);
   const float cos_gleam_from_ = CosDeg(4 * kGlossWidth_deg);

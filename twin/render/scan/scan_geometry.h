@@ -35,7 +35,7 @@ struct ScanGeometry {
 };
 
 struct ScanSettings {
-  int width = 1032, height = 772;
+  int width = 0, height = 0;
   ScannerSpec spec;
   ScannerEffects effects;
   double noise_scale = 1.0;     ///< Of ScannerEffects::noise.

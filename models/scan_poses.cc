@@ -1,30 +1,22 @@
-#include "models/layout.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "models/scanner_spec.h"
+#include "models/cell_model.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr double kScanHeight_m = 0.515;   // scanner origin over the floor
-constexpr double kCovered_m = 0.13;       // everything up to here over the floor is seen
 constexpr double kTipsBeyondE_m = 0.019;  // closed fingers, with what they advance while closing
 constexpr double kTipsOverWall_m = 0.05;
 
-/// Places of the views along one direction, relative to the middle of the bin. The study's own
-/// places for the sizes that it was made for; otherwise evenly spread, the outer views flush with
-/// the walls.
-std::vector<double> ViewOffsets(double extent_m, double field_m) {
-  constexpr double kTolerance_m = 0.005;  // the study's floor is 0.80 x 0.60
-  if (extent_m > 0.70 && extent_m < 0.80 + kTolerance_m) {
-    const std::vector<double> studied = {-0.29, -0.10, 0.10, 0.29};
-    if (2 * studied.back() + field_m >= extent_m) return studied;
-  }
-  if (extent_m > 0.50 && extent_m < 0.60 + kTolerance_m) {
-    const std::vector<double> studied = {-0.145, 0.145};
-    if (2 * studied.back() + field_m >= extent_m) return studied;
+/// Places of the views along one direction, relative to the middle of the bin: the layout's own for
+/// the sizes that they were made for, where they see up to the walls; otherwise evenly spread, the
+/// outer views flush with the walls.
+std::vector<double> ViewOffsets(double extent_m, double field_m,
+                                const CellLayout::ScanOffsets& known) {
+  if (!known.offsets_m.empty() && extent_m > known.extent_m[0] && extent_m < known.extent_m[1] &&
+      2 * known.offsets_m.back() + field_m >= extent_m) {
+    return known.offsets_m;
   }
   const int count = std::max(1, static_cast<int>(std::ceil(extent_m / field_m - 1e-9)));
   std::vector<double> offsets;
@@ -38,14 +30,13 @@ std::vector<double> ViewOffsets(double extent_m, double field_m) {
 /// Looking straight down from (x, y), height `z`, all in B; or, when the projector stands beyond
 /// the bin's wall at `wall_x` and that wall's shadow could hide a tube, from inside the bin, tilted
 /// outward: then the projector is inside too and lights the floor up to the wall.
-RigidTransform LookFrom(double x, double y, double z, double wall_x, double wall_m,
-                        double floor_z) {
+RigidTransform LookFrom(const ScannerSpec& spec, double x, double y, double z, double wall_x,
+                        double wall_m, double floor_z) {
   // A narrower shadow hides no tube: the thinnest, 20 mm, rises out of it.
   constexpr double kMaxShadow_m = 0.022;
-  // Just enough that the wall is still seen up to kCovered_m, as from the place straight above.
+  // Just enough that the wall is still seen as high as from the place straight above.
   const double tilt = Radians(10.0);
   constexpr double kInside_m = 0.004;
-  const ScannerSpec spec;
   const double toe_in = Radians(spec.toe_in_deg);
   const Vector3 p_SP = spec.baseline_m * Vector3(std::cos(toe_in), 0, std::sin(toe_in));
   const Matrix3 down = RotX(kPi);  // image x along B's x
@@ -57,16 +48,16 @@ RigidTransform LookFrom(double x, double y, double z, double wall_x, double wall
   return MakeTransform(tilted, Vector3(wall_x - kInside_m - (tilted * p_SP).x(), y, z));
 }
 
-}  // namespace
-
-std::vector<RigidTransform> DefaultScanPoses(const Bin& bin) {
-  const ScannerSpec spec;
-  const CellLayout layout;
+/// Views straight down that cover the bin.
+std::vector<RigidTransform> CoveringPoses(const CellModel& model, const Bin& bin) {
+  const ScannerSpec& spec = model.scanner;
+  const CellLayout& layout = model.layout;
   const double tips_below_m =
       (layout.X_FS.inverse() * layout.X_FE.translation()).z() + kTipsBeyondE_m;
-  const double height_m = std::max(kScanHeight_m, bin.wall_m() + kTipsOverWall_m + tips_below_m);
+  const double height_m =
+      std::max(layout.scan_height_m, bin.wall_m() + kTipsOverWall_m + tips_below_m);
   // Field at the top of what has to be seen, where it is smallest.
-  const double depth_m = height_m - kCovered_m;
+  const double depth_m = height_m - layout.scan_covered_m;
   constexpr double kEdge_m = 0.004;  // not counted on: the outermost pixels
   const double field_x_m = spec.full_width * depth_m / spec.focal_px - kEdge_m;
   const double field_y_m = spec.full_height * depth_m / spec.focal_px - kEdge_m;
@@ -76,16 +67,25 @@ std::vector<RigidTransform> DefaultScanPoses(const Bin& bin) {
   std::vector<RigidTransform> X_BS;
   bool forward = true;
   const Vector3& p_BN = bin.X_BN.translation();
-  for (const double x : ViewOffsets(extent_x_m, field_x_m)) {
-    auto row = ViewOffsets(extent_y_m, field_y_m);
+  for (const double x : ViewOffsets(extent_x_m, field_x_m, layout.scan_offsets_x)) {
+    auto row = ViewOffsets(extent_y_m, field_y_m, layout.scan_offsets_y);
     if (!forward) std::reverse(row.begin(), row.end());  // to and fro: the shortest way
     forward = !forward;
     for (const double y : row) {
-      X_BS.push_back(LookFrom(p_BN.x() + x, p_BN.y() + y, p_BN.z() + height_m,
+      X_BS.push_back(LookFrom(spec, p_BN.x() + x, p_BN.y() + y, p_BN.z() + height_m,
                               p_BN.x() + 0.5 * extent_x_m, bin.wall_m(), p_BN.z()));
     }
   }
   return X_BS;
+}
+
+}  // namespace
+
+std::vector<RigidTransform> ScanPosesOf(const CellModel& model, const Bin& bin) {
+  const CellLayout& layout = model.layout;
+  if (layout.scanner_mount == CellLayout::ScannerMount::kStand) return {layout.X_BS};
+  if (!layout.scan_poses_BS.empty()) return layout.scan_poses_BS;
+  return CoveringPoses(model, bin);
 }
 
 }  // namespace tubetwin

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+
+#include "models/base/config/config.h"
+#include "models/base/frames.h"
+
+namespace tubetwin {
+
+/// A box, capsule, cylinder or sphere that hangs on a body of the cell: for the clearance check,
+/// the twin's contacts and its pictures.
+struct Shape {
+  enum class Kind { kBox, kCapsule, kCylinder, kSphere } kind = Kind::kBox;
+  std::string name;
+  int link = 0;  ///< 0 base, 1..6 links, 7 flange (tool, scanner).
+  RigidTransform X_LinkShape = RigidTransform::Identity();
+  /// Box: half sizes; capsule, cylinder: radius, half length of the straight part (along z);
+  /// sphere: radius.
+  Vector3 size_m = Vector3::Zero();
+  bool scanner = false;
+};
+
+/// Shape::link of what hangs on the flange.
+inline constexpr int kFlangeBody = 7;
+
+/// Half sizes of the box around a shape, in its own axes.
+Vector3 HalfExtent(const Shape& shape);
+
+/// The rotation of a quaternion w x y z. Throws Error(kConfig) naming `what` when its length is not
+/// 1 (within 0.001).
+Matrix3 UnitRotation(const std::array<double, 4>& wxyz, const std::string& what);
+
+/// A `[[shape]]` table of a model file: name, kind, size_m, centre_m, wxyz; `more` lists further
+/// keys. Its link is left 0. Throws Error(kConfig) with the place or `path`.
+Shape ReadShape(const ConfigSource& source, const std::string& path,
+                const std::function<void(ConfigVisitor&)>& more = {});
+
+}  // namespace tubetwin
