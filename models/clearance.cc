@@ -22,22 +22,6 @@ constexpr int kNumBodies = 8;              // base, links 1 to 6, flange
 constexpr double kFingerLength_m = 0.075;  // from the pads' lower edge towards the palm
 constexpr double kSlab_m = 0.10;           // floor, tray and plate are at least this thick
 
-/// Bodies of one arm that can meet: everything else the joints hold apart, or they are neighbours.
-constexpr std::array<std::array<int, 2>, 14> kSelfPairs = {{{7, 0},
-                                                            {7, 1},
-                                                            {7, 2},
-                                                            {7, 3},
-                                                            {7, 4},
-                                                            {6, 0},
-                                                            {6, 1},
-                                                            {6, 2},
-                                                            {5, 0},
-                                                            {5, 1},
-                                                            {5, 2},
-                                                            {4, 0},
-                                                            {4, 1},
-                                                            {3, 0}}};
-
 std::shared_ptr<fcl::CollisionGeometryd> Geometry(const Shape& shape) {
   const Vector3& s = shape.size_m;
   switch (shape.kind) {
@@ -222,7 +206,7 @@ ClearanceChecker::Result ClearanceChecker::Check(const JointVector& q, double op
       for (const Placed& obstacle : impl_->other_obstacles) others_best.Try(moving, obstacle);
     }
   }
-  for (const auto& [a, b] : kSelfPairs) {
+  for (const auto& [a, b] : impl_->arm.self_pairs) {
     for (const Placed& moving : bodies[a]) {
       for (const Placed& other : bodies[b]) others_best.Try(moving, other);
     }
