@@ -55,7 +55,7 @@ std::vector<Shape> ToolShapes(const CellModel& model) {
 }
 
 std::vector<Shape> MovingShapes(const CellModel& model) {
-  std::vector<Shape> shapes = ArmShapes(model.arm);
+  std::vector<Shape> shapes = model.arm.shapes;
   for (Shape& shape : ToolShapes(model)) shapes.push_back(std::move(shape));
   return shapes;
 }

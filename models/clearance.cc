@@ -18,22 +18,6 @@ constexpr int kNumBodies = 8;         // base, links 1 to 6, flange
 constexpr double kPlateHalf_m = 2.0;  // the plate goes on as floor
 constexpr double kSlab_m = 0.10;      // floor, tray and plate are at least this thick
 
-/// Bodies of one arm that can meet: everything else the joints hold apart, or they are neighbours.
-constexpr std::array<std::array<int, 2>, 14> kSelfPairs = {{{7, 0},
-                                                            {7, 1},
-                                                            {7, 2},
-                                                            {7, 3},
-                                                            {7, 4},
-                                                            {6, 0},
-                                                            {6, 1},
-                                                            {6, 2},
-                                                            {5, 0},
-                                                            {5, 1},
-                                                            {5, 2},
-                                                            {4, 0},
-                                                            {4, 1},
-                                                            {3, 0}}};
-
 std::shared_ptr<fcl::CollisionGeometryd> Geometry(const Shape& shape) {
   const Vector3& s = shape.size_m;
   switch (shape.kind) {
@@ -215,7 +199,7 @@ ClearanceChecker::Result ClearanceChecker::Check(const JointVector& q, double op
       for (const Placed& obstacle : impl_->other_obstacles) others_best.Try(moving, obstacle);
     }
   }
-  for (const auto& [a, b] : kSelfPairs) {
+  for (const auto& [a, b] : arm.self_pairs) {
     for (const Placed& moving : bodies[a]) {
       for (const Placed& other : bodies[b]) others_best.Try(moving, other);
     }
@@ -227,6 +211,60 @@ ClearanceChecker::Result ClearanceChecker::Check(const JointVector& q, double op
       result.fingers.clearance_m < result.others.clearance_m ? result.fingers : result.others;
   static_cast<Nearest&>(result) = nearest;
   return result;
+}
+
+namespace {
+
+/// Outside of the bin, walls and floor.
+Shape WholeBin(const Bin& bin) {
+  const double t = Bin::kWallThickness_m;
+  const double height_m = bin.wall_m() + t;
+  return BoxShape("bin", bin.X_BN * Translation(0, 0, 0.5 * height_m - t),
+                  {bin.half_x_m() + t, bin.half_y_m() + t, 0.5 * height_m});
+}
+
+/// The block from the plate up to the tray's surface.
+Shape WholeTray(const CellLayout& layout) {
+  const double half_m = 0.5 * layout.tray_size_m;
+  const double down_m = std::max(1e-3, 0.5 * (layout.X_BT.translation().z() - layout.plate_z_m));
+  return BoxShape("tray", layout.X_BT * Translation(0, 0, -down_m), {half_m, half_m, down_m});
+}
+
+}  // namespace
+
+std::vector<StandingPair> StandingClearances(const CellModel& model, const Bin& bin) {
+  const CellLayout& layout = model.layout;
+  const Solid bin_solid(WholeBin(bin)), tray_solid(WholeTray(layout));
+  const RigidTransform identity = RigidTransform::Identity();
+  std::vector<StandingPair> pairs;
+  const auto add = [&](const Solid& a, const Solid& b, const RigidTransform& X_BBodyOfB,
+                       const char* key) {
+    pairs.push_back(
+        {a.shape.name, b.shape.name, Distance(Placed(a, identity), Placed(b, X_BBodyOfB)), key});
+  };
+  constexpr const char* kBinKey = "bin.X_BN, bin.size_m";
+  constexpr const char* kTrayKey = "tray.X_BT, tray.size_m";
+  add(bin_solid, tray_solid, identity, kBinKey);
+  const double t = Bin::kWallThickness_m;
+  // A bin may stand on the plate itself.
+  const double over_plate_m = bin.X_BN.translation().z() - t - layout.plate_z_m;
+  if (over_plate_m < 0.0) pairs.push_back({"bin", "cell plate", over_plate_m, kBinKey});
+  pairs.push_back(
+      {"tray", "cell plate", layout.X_BT.translation().z() - layout.plate_z_m, kTrayKey});
+  // The base does not move, and the first link turns about its own axis.
+  const auto X_BL = LinkPoses(model.arm, JointVector::Zero());
+  for (const Shape& shape : MovingShapes(model)) {
+    if (shape.link > 1) continue;
+    const Solid solid(shape);
+    add(bin_solid, solid, X_BL[shape.link], kBinKey);
+    add(tray_solid, solid, X_BL[shape.link], kTrayKey);
+  }
+  for (const Shape& shape : StandingShapes(model)) {
+    const Solid solid(shape);
+    add(bin_solid, solid, identity, kBinKey);
+    add(tray_solid, solid, identity, kTrayKey);
+  }
+  return pairs;
 }
 
 }  // namespace tubetwin

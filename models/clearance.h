@@ -38,4 +38,15 @@ class ClearanceChecker {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Two things of a cell that stand, and how far apart they are (negative: into each other).
+struct StandingPair {
+  std::string a, b;
+  double clearance_m = 0.0;
+  std::string remedy_key;  ///< Of the configuration: what moves `a`.
+};
+
+/// Bin (with its plinth) and tray against each other, the plate, the arm's base and first link, and
+/// what else stands in the cell. In a fixed order.
+std::vector<StandingPair> StandingClearances(const CellModel& model, const Bin& bin);
+
 }  // namespace tubetwin

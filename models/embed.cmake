@@ -1,5 +1,5 @@
 # Turns text files into one C++ source, so that the program carries them and can be moved anywhere.
-#   cmake -DOUTPUT=x.cc -DROOT=models -DFILES=arm/hc10.toml,parts/a.toml -P embed.cmake
+#   cmake -DOUTPUT=x.cc -DROOT=models -DFILES=arms/hc10.toml,parts/a.toml -P embed.cmake
 # Run at build time; a changed file is compiled in again. Looked up by models/embedded.h.
 string(REPLACE "," ";" FILES "${FILES}")
 set(text "#include \"models/embedded.h\"\n\nnamespace tubetwin {\n\n")

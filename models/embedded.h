@@ -7,7 +7,7 @@ namespace tubetwin {
 
 /// A text file of this room that was compiled into the program, so that it can be moved anywhere.
 struct EmbeddedText {
-  std::string_view path;  ///< Relative to models, "arm/hc10.toml".
+  std::string_view path;  ///< Relative to models, "arms/hc10.toml".
   std::string_view text;
 };
 

@@ -99,7 +99,7 @@ void RequireSameCount(const std::string& path, const std::string& key, std::size
 GripperSpec::Link ReadLink(const ConfigSource& source, const std::string& path) {
   std::vector<double> opening_m, y_m, z_m, angle_deg;
   GripperSpec::Link link;
-  link.shape = ReadShape(source, path, [&](ConfigVisitor& v) {
+  link.shape = ReadShape(source, [&](ConfigVisitor& v) {
     v.Field("opening_m", "openings, rising, of the three lists below", opening_m, 0, {0.0, 1.0});
     v.Field("y_m", "its centre in E at those, of the finger at +y", y_m, 0, {-1.0, 1.0});
     v.Field("z_m", "likewise", z_m, 0, {-1.0, 1.0});
@@ -181,7 +181,7 @@ GripperSpec ReadGripper(const ModelFile& file) {
   }
   if (shapes.empty()) Fail(file.path, "no [[shape]]; the body that carries the fingers is needed");
   for (const ConfigSource& shape : shapes) {
-    spec.body.push_back(ReadShape(shape, file.path));
+    spec.body.push_back(ReadShape(shape));
     spec.body.back().link = kFlangeBody;
   }
   for (const ConfigSource& link : links) spec.links.push_back(ReadLink(link, file.path));

@@ -1,6 +1,7 @@
 #include "models/shape.h"
 
 #include <cmath>
+#include <utility>
 
 #include "models/base/error.h"
 #include "models/base/text.h"
@@ -10,47 +11,39 @@ namespace tubetwin {
 namespace {
 
 struct ShapeEntry {
-  std::string name, kind;
-  std::vector<double> size_m;
-  std::array<double, 3> centre_m = {kNotGiven, kNotGiven, kNotGiven};
-  std::array<double, 4> wxyz = {1, 0, 0, 0};
-
+  std::string name, kind = "box";
+  std::array<double, 3> origin_m = {0, 0, 0}, rpy_deg = {0, 0, 0};
+  std::array<double, 3> size_m = {kNotGiven, kNotGiven, kNotGiven};
+  double radius_m = kNotGiven, length_m = kNotGiven;
   void Visit(ConfigVisitor& v) {
-    v.Field("name", "for messages, one of its kind", name);
-    v.Choice("kind", "what it is", kind, {"box", "capsule", "cylinder", "sphere"});
-    v.Field("size_m",
-            "box: length along x, y, z; capsule (without its round ends) and cylinder: radius, "
-            "length along z; sphere: radius",
-            size_m, 0, {1e-4, 10.0});
-    v.Field("centre_m", "of it", centre_m, {-10.0, 10.0});
-    v.Field("wxyz", "how it is turned: quaternion w x y z", wxyz, {-1.0, 1.0});
+    v.Field("name", "Of the shape, for messages.", name);
+    v.Choice("kind", "What it is.", kind, {"box", "capsule", "cylinder", "sphere"});
+    v.Field("origin_m", "Its centre.", origin_m, Range{-10.0, 10.0});
+    v.Field("rpy_deg", "How it is turned: about x, then y, then z of what it is part of.", rpy_deg,
+            Range{-360.0, 360.0});
+    v.Field("size_m", "box: whole lengths along x, y, z.", size_m, Range{0.001, 10.0});
+    v.Field("radius_m", "capsule, cylinder, sphere.", radius_m, Range{0.001, 5.0});
+    v.Field("length_m",
+            "capsule, cylinder: along z; a capsule's between the centres of its round ends.",
+            length_m, Range{0.001, 10.0});
   }
 };
 
-Shape FromEntry(const ShapeEntry& entry, const std::string& path) {
-  const std::size_t needed = entry.kind == "box" ? 3 : entry.kind == "sphere" ? 1 : 2;
-  if (entry.size_m.size() != needed) {
-    throw Error(ErrorKind::kConfig, path + ": shape '" + entry.name + "': size_m has " +
-                                        std::to_string(entry.size_m.size()) + " numbers; a " +
-                                        entry.kind + " needs " + std::to_string(needed));
+[[noreturn]] void Fail(const ConfigSource& source, const std::string& key,
+                       const std::string& problem) {
+  const std::string at = source.PlaceOf(key);
+  throw Error(ErrorKind::kConfig, (at.empty() ? source.place() : at) + ": " + problem);
+}
+
+/// Which of the keys of sizes a kind of shape takes.
+void CheckSizeKeys(const ConfigSource& source, const std::string& what, const std::string& kind) {
+  const bool box = kind == "box", sphere = kind == "sphere";
+  for (const auto& [key, takes] : {std::pair{"size_m", box}, std::pair{"radius_m", !box},
+                                   std::pair{"length_m", !box && !sphere}}) {
+    const bool given = !source.PlaceOf(key).empty();
+    if (takes && !given) Fail(source, "", what + ": a " + kind + " needs the key " + key);
+    if (!takes && given) Fail(source, key, what + ": a " + kind + " has no " + key);
   }
-  Shape shape;
-  shape.name = entry.name;
-  shape.X_LinkShape =
-      MakeTransform(UnitRotation(entry.wxyz, path + ": shape '" + entry.name + "': wxyz"),
-                    Vector3(entry.centre_m[0], entry.centre_m[1], entry.centre_m[2]));
-  const std::vector<double>& s = entry.size_m;
-  if (entry.kind == "box") {
-    shape.kind = Shape::Kind::kBox;
-    shape.size_m = 0.5 * Vector3(s[0], s[1], s[2]);
-  } else if (entry.kind == "sphere") {
-    shape.kind = Shape::Kind::kSphere;
-    shape.size_m = Vector3(s[0], 0, 0);
-  } else {
-    shape.kind = entry.kind == "capsule" ? Shape::Kind::kCapsule : Shape::Kind::kCylinder;
-    shape.size_m = Vector3(s[0], 0.5 * s[1], 0);
-  }
-  return shape;
 }
 
 }  // namespace
@@ -81,16 +74,38 @@ Matrix3 UnitRotation(const std::array<double, 4>& wxyz, const std::string& what)
   return RotationFromWxyz(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
 }
 
-Shape ReadShape(const ConfigSource& source, const std::string& path,
-                const std::function<void(ConfigVisitor&)>& more) {
+Matrix3 RotationFromRpy(const std::array<double, 3>& rpy_deg) {
+  return RotZ(Radians(rpy_deg[2])) * RotY(Radians(rpy_deg[1])) * RotX(Radians(rpy_deg[0]));
+}
+
+Shape ReadShape(const ConfigSource& source, const std::function<void(ConfigVisitor&)>& more) {
   ShapeEntry entry;
-  const auto visit = [&](ConfigVisitor& v) {
+  source.Read([&](ConfigVisitor& v) {
     entry.Visit(v);
     if (more) more(v);
-  };
-  source.Read(visit);
-  RequireGiven(visit, path + ": shape '" + entry.name + "'");
-  return FromEntry(entry, path);
+  });
+  const std::string what = "shape '" + entry.name + "'";
+  for (const char* key : {"name", "kind"}) {
+    if (source.PlaceOf(key).empty()) {
+      Fail(source, "", what + " lacks the key " + key + "; it has no default");
+    }
+  }
+  CheckSizeKeys(source, what, entry.kind);
+  const auto vector = [](const std::array<double, 3>& v) { return Vector3(v[0], v[1], v[2]); };
+  Shape shape;
+  shape.name = entry.name;
+  shape.X_LinkShape = MakeTransform(RotationFromRpy(entry.rpy_deg), vector(entry.origin_m));
+  if (entry.kind == "box") {
+    shape.kind = Shape::Kind::kBox;
+    shape.size_m = 0.5 * vector(entry.size_m);
+  } else if (entry.kind == "sphere") {
+    shape.kind = Shape::Kind::kSphere;
+    shape.size_m = Vector3(entry.radius_m, 0, 0);
+  } else {
+    shape.kind = entry.kind == "capsule" ? Shape::Kind::kCapsule : Shape::Kind::kCylinder;
+    shape.size_m = Vector3(entry.radius_m, 0.5 * entry.length_m, 0);
+  }
+  return shape;
 }
 
 }  // namespace tubetwin

@@ -32,9 +32,12 @@ Vector3 HalfExtent(const Shape& shape);
 /// 1 (within 0.001).
 Matrix3 UnitRotation(const std::array<double, 4>& wxyz, const std::string& what);
 
-/// A `[[shape]]` table of a model file: name, kind, size_m, centre_m, wxyz; `more` lists further
-/// keys. Its link is left 0. Throws Error(kConfig) with the place or `path`.
-Shape ReadShape(const ConfigSource& source, const std::string& path,
-                const std::function<void(ConfigVisitor&)>& more = {});
+/// About x, then y, then z of the fixed frame: URDF's rpy.
+Matrix3 RotationFromRpy(const std::array<double, 3>& rpy_deg);
+
+/// A `[[shape]]` table of a model file: name, kind, origin_m, rpy_deg, and size_m, radius_m or
+/// length_m as the kind takes them; `more` lists further keys. Its link is left 0. Throws
+/// Error(kConfig) with file:line:column.
+Shape ReadShape(const ConfigSource& source, const std::function<void(ConfigVisitor&)>& more = {});
 
 }  // namespace tubetwin

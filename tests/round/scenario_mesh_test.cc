@@ -3,9 +3,11 @@
 #include <fstream>
 
 #include "models/base/error.h"
+#include "models/base/files.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/tube_mesh.h"
+#include "twin/round/archive.h"
 
 namespace tubetwin {
 namespace {
@@ -82,11 +84,11 @@ TEST_CASE("Meshes stand in pictures where bin and links stand", "[campaign]") {
   CHECK(widest == Approx(0.36).margin(kExact_m));
   CHECK(visuals[1].body == "arm_link2");
   CHECK(visuals[1].mesh.BoxSize().z() == Approx(0.4));
-  const std::vector<ArchivedFile> files = ArchiveMeshes(scenario, folder.path());
+  const std::vector<ArchivedFile> files = ArchiveInputs(scenario, folder.path());
   REQUIRE(files.size() == 2);
   CHECK(scenario.bin.mesh == "given.bin.stl");
   CHECK(scenario.cell.arm.visual_meshes[2] == "given.arm_2.stl");
-  CHECK(files[1].from == folder / "link.stl");
+  CHECK(files[1].text == ReadFile(folder / "link.stl"));
   scenario.cell.arm.visual_meshes.assign(8, "");
   CHECK_THROWS_AS(ScenarioVisuals(scenario, folder.path()), Error);
 }

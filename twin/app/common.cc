@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "models/base/error.h"
+#include "twin/round/scenario_check.h"
 
 namespace tubetwin {
 namespace {
@@ -35,6 +36,16 @@ void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc
   verb.add_flag("--json", common.json, "Print JSON instead of a table");
   verb.add_flag("-v,--verbose", common.verbose, "Say more");
   verb.add_flag("-q,--quiet", common.quiet, "Say nothing but errors");
+}
+
+void RequireSoundCell(const Scenario& scenario, const std::string& folder, const Common& common) {
+  const std::vector<Finding> findings = CheckScenario(scenario, folder);
+  for (const Finding& finding : findings) {
+    if (finding.verdict != Finding::Verdict::kDoubtful) continue;
+    Say(common, "doubtful: " + finding.what + ": " + finding.found + "; " + finding.allowed + "; " +
+                    finding.remedy);
+  }
+  RequirePossible(findings);
 }
 
 Scenario LoadScenario(const std::vector<std::string>& files, const Common& common,

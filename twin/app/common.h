@@ -51,6 +51,10 @@ std::function<bool()> StopOnSignals();
 /// A line to stderr unless quiet.
 void Say(const Common& common, const std::string& line);
 
+/// Checks the scenario's cell (CheckScenario): doubts are said, an impossible one throws
+/// Error(kConfig).
+void RequireSoundCell(const Scenario& scenario, const std::string& folder, const Common& common);
+
 /// One-line progress on a terminal's stderr, overwritten in place; nothing when stderr is no
 /// terminal.
 class ProgressLine {

@@ -60,6 +60,9 @@ int RunVerb(const CampaignOptions& given, const Common& common) {
                               [](const char* name) -> const char* { return std::getenv(name); });
   if (!given.limit_time.empty()) options.limit_s = ParseDuration(given.limit_time);
   const Campaign campaign = LoadCampaign(given.file, common.overrides, common.seed);
+  for (const CampaignVariant& variant : campaign.variants) {
+    RequireSoundCell(variant.scenario, campaign.folder, common);
+  }
   options.out_folder = common.out;
   options.jobs = given.jobs;
   options.grace_s = given.grace_s;

@@ -11,16 +11,17 @@
 #include "twin/app/common.h"
 #include "twin/live/live_cell.h"
 #include "twin/render/gl/egl_context.h"
+#include "twin/round/scenario_check.h"
 
 namespace tubetwin {
 namespace {
 
-struct Finding {
+struct Examined {
   std::string what, state, fix;  ///< Empty fix: fine.
 };
 
-std::vector<Finding> Examine() {
-  std::vector<Finding> out;
+std::vector<Examined> Examine() {
+  std::vector<Examined> out;
   out.push_back({"physics engine", "MuJoCo " + EngineVersion(), ""});
   try {
     const EglContext context;
@@ -43,13 +44,22 @@ std::vector<Finding> Examine() {
 
 /// Connects to the device of a role; `read` says what it tells.
 template <class Role, class Read>
-Finding Look(const std::string& what, const Role& role, const DriverContext& context, Read read) {
+Examined Look(const std::string& what, const Role& role, const DriverContext& context, Read read) {
   if (!role.IsDevice()) return {what, role.driver, ""};
   try {
     return {what, role.driver + ": " + read(*role.Connect(context)), ""};
   } catch (const Error& e) {
     return {what, e.what(), role.Link().fix};
   }
+}
+
+/// Doubts are told, but nothing is missing.
+Examined AsExamined(const Finding& judged) {
+  const bool impossible = judged.verdict == Finding::Verdict::kImpossible;
+  std::string state = std::string(ToString(judged.verdict)) + ", " + judged.found;
+  if (judged.verdict != Finding::Verdict::kOk) state += "; allowed: " + judged.allowed;
+  if (judged.verdict == Finding::Verdict::kDoubtful) state += "; " + judged.remedy;
+  return {judged.what, state, impossible ? judged.remedy : ""};
 }
 
 std::string Text(const char* format, double value) {
@@ -79,14 +89,14 @@ std::string Said(const WrenchSample& sample) {
 }
 
 /// Every device of the scenario's cell, read without moving anything.
-std::vector<Finding> ExamineCell(const Scenario& scenario, const std::string& folder) {
+std::vector<Examined> ExamineCell(const Scenario& scenario, const std::string& folder) {
   scenario.cell.ValidateOrThrow();
   const CellConfig& cell = scenario.cell;
   const WallClock clock(scenario.rate);
   const CellModel model = ScenarioModel(scenario);
   DriverContext context = ScenarioContext(scenario, model, clock, CellPurpose::kLook, folder);
   context.believed_X_NS = [] { return RigidTransform::Identity(); };
-  std::vector<Finding> out;
+  std::vector<Examined> out;
   out.push_back(Look("arm", cell.arm, context, [&](const Arm& arm) {
     return Said(arm.State()) + (cell.arm.armed ? ", armed in the cell file" : "");
   }));
@@ -100,15 +110,24 @@ std::vector<Finding> ExamineCell(const Scenario& scenario, const std::string& fo
 }
 
 int Doctor(const std::string& cell_file, const Common& common) {
-  std::vector<Finding> findings;
+  std::vector<Examined> findings;
+  bool impossible = false;
   if (cell_file.empty()) {
     findings = Examine();
   } else {
-    findings = ExamineCell(LoadScenario({cell_file}, common), FolderOf(cell_file));
+    const Scenario scenario = LoadScenario({cell_file}, common);
+    const std::vector<Finding> judged = CheckScenario(scenario, FolderOf(cell_file));
+    for (const Finding& finding : judged) findings.push_back(AsExamined(finding));
+    impossible = WorstOf(judged) == Finding::Verdict::kImpossible;
+    if (!impossible) {
+      for (Examined& device : ExamineCell(scenario, FolderOf(cell_file))) {
+        findings.push_back(std::move(device));
+      }
+    }
   }
   int missing = 0;
   Json json = Json::array();
-  for (const Finding& f : findings) {
+  for (const Examined& f : findings) {
     missing += !f.fix.empty();
     json.push_back(Json{{"what", f.what}, {"state", f.state}, {"fix", f.fix}});
     if (!common.json) {
@@ -117,6 +136,7 @@ int Doctor(const std::string& cell_file, const Common& common) {
     }
   }
   if (common.json) std::printf("%s\n", json.dump(2).c_str());
+  if (impossible) return static_cast<int>(ErrorKind::kConfig);
   return missing == 0 ? 0 : static_cast<int>(ErrorKind::kDevice);
 }
 

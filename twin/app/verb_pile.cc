@@ -5,8 +5,10 @@
 #include "models/base/error.h"
 #include "models/base/json.h"
 #include "models/base/text.h"
+#include "planner/cell_check/cell_check.h"
 #include "twin/app/common.h"
 #include "twin/render/pile_picture.h"
+#include "twin/round/scenario_check.h"
 
 namespace tubetwin {
 namespace {
@@ -27,6 +29,7 @@ int Generate(const PileOptions& options, const Common& common) {
   const Part part = LoadPart(options.part);
   Bin bin;
   if (!options.bin.empty()) bin.size_m = ParseBinSize(options.bin);
+  RequirePossible({CheckFill(bin, part, options.count)});
   const Scenario scenario = LoadScenario({}, common);
   const auto seed = static_cast<std::uint64_t>(scenario.seed);
   // The same draw as `run` makes, so that its start can be made alone.

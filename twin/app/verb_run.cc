@@ -149,6 +149,7 @@ int Run(const RunOptions& run, const Common& common) {
   for (const std::string& text : run.require) requirements.push_back(ParseRequirement(text));
   RoundOptions options;
   const Scenario scenario = RunScenario(run, common, options.scenario_folder);
+  RequireSoundCell(scenario, options.scenario_folder, common);
   options.out_folder = common.out;
   options.parallelism = common.parallelism();
   options.video = run.video;

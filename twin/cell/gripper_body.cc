@@ -1,6 +1,8 @@
 #include "twin/cell/gripper_body.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <string>
 
 #include "models/base/error.h"
@@ -11,6 +13,7 @@ namespace tubetwin {
 namespace {
 
 constexpr double kCarriageMass_kg = 0.05;
+constexpr double kLinkMass_kg = 0.02;
 
 constexpr double kPadHalfThickness_m = 0.003;
 
@@ -63,6 +66,18 @@ void AddPad(mjsBody& finger, const char* name, const GripperSpec& gripper,
   std::copy(rgba, rgba + 4, pad->rgba);
 }
 
+/// Without mass: its body has that.
+void LookLikeFinger(mjsGeom& geom) {
+  geom.mass = 0.0;
+  geom.condim = 4;
+  geom.friction[0] = 0.3;
+  geom.solref[0] = 0.005;
+  geom.contype = kGripperBit;
+  geom.conaffinity = kTubeBit;
+  const float rgba[4] = {0.25f, 0.25f, 0.27f, 1.0f};
+  std::copy(rgba, rgba + 4, geom.rgba);
+}
+
 /// One finger; `side` +1 at +y, -1 at -y. Origin: centre of its pad.
 void AddFinger(mjsBody& carriage, double side, const char* joint_name, const char* pad_name,
                const GripperSpec& gripper, const RoundPhysics& physics) {
@@ -84,14 +99,7 @@ void AddFinger(mjsBody& carriage, double side, const char* joint_name, const cha
   bar->size[2] = 0.5 * gripper.finger_length_m;
   bar->pos[1] = side * (kPadHalfThickness_m + half_thickness_m);
   bar->pos[2] = 0.5 * gripper.pad_height_m - 0.5 * gripper.finger_length_m;
-  bar->mass = 0.0;
-  bar->condim = 4;
-  bar->friction[0] = 0.3;
-  bar->solref[0] = 0.005;
-  bar->contype = kGripperBit;
-  bar->conaffinity = kTubeBit;
-  const float rgba[4] = {0.25f, 0.25f, 0.27f, 1.0f};
-  std::copy(rgba, rgba + 4, bar->rgba);
+  LookLikeFinger(*bar);
 }
 
 void AddCoupling(mjSpec& spec, const char* name, const char* follower, const char* leader,
@@ -128,9 +136,10 @@ void AddGripActuator(mjSpec& spec, double force_N) {
   grip->forcerange[1] = force_N;
 }
 
-}  // namespace
-
-AdvancePolynomial FitTipAdvance(const GripperSpec& spec) {
+/// What follows the fingers, less its value when they are open, as a polynomial of one finger's
+/// travel.
+AdvancePolynomial FitToTravel(const GripperSpec& spec,
+                              const std::function<double(double opening_m)>& value) {
   constexpr int kSamples = 86;
   // Sizes known at compile time would be unrolled, for most of a minute of compiling.
   Eigen::Matrix<double, Eigen::Dynamic, 4> A(kSamples, 4);
@@ -139,7 +148,7 @@ AdvancePolynomial FitTipAdvance(const GripperSpec& spec) {
     // The unknowns are scaled by the half stroke; metres to the fourth are tiny.
     const double u = static_cast<double>(i) / (kSamples - 1);
     A.row(i) << u, u * u, u * u * u, u * u * u * u;
-    advance[i] = TipAdvance(spec, spec.stroke_m * (1.0 - u)) - TipAdvance(spec, spec.stroke_m);
+    advance[i] = value(spec.stroke_m * (1.0 - u)) - value(spec.stroke_m);
   }
   const Eigen::Vector4d scaled = A.colPivHouseholderQr().solve(advance);
   AdvancePolynomial fit;
@@ -152,12 +161,57 @@ AdvancePolynomial FitTipAdvance(const GripperSpec& spec) {
   return fit;
 }
 
+/// A bar of the linkage of the finger at side +1 (+y) or -1: it goes where the table says, moved by
+/// what couples it to the finger, so that it pushes as fast as it moves.
+void AddLink(mjSpec& spec, mjsBody& tool, const GripperSpec& gripper, const GripperSpec::Link& link,
+             const RigidTransform& X_KE, int side) {
+  const std::string name = link.shape.name + (side > 0 ? " +y" : " -y");
+  const RigidTransform X_EOpen = LinkPose(link, gripper.stroke_m, side);
+  mjsBody* body = mjs_addBody(&tool, nullptr);
+  SetName(body->element, name);
+  SetPose(X_KE * X_EOpen, body->pos, body->quat);
+  SetInertial(*body, kLinkMass_kg, Vector3::Zero(), 2e-5, 2e-5, 2e-5);
+  const char* leader = side > 0 ? kFingerLeftJoint : kFingerRightJoint;
+  const auto couple = [&](const char* suffix, mjtJoint type, const Vector3& axis_E,
+                          const std::function<double(double)>& value) {
+    const std::string joint_name = name + suffix;
+    mjsJoint& joint =
+        AddSlide(*body, joint_name.c_str(), X_EOpen.linear().transpose() * axis_E, 1.0);
+    joint.type = type;
+    joint.limited = mjLIMITED_FALSE;  // The coupling holds it.
+    joint.armature = type == mjJNT_HINGE ? 1e-3 : 0.05;
+    AddCoupling(spec, joint_name.c_str(), joint_name.c_str(), leader,
+                FitToTravel(gripper, value).c);
+  };
+  const auto at = [&link, side](double opening_m) { return LinkPose(link, opening_m, side); };
+  couple(" aside", mjJNT_SLIDE, Vector3::UnitY(),
+         [&](double o) { return at(o).translation().y(); });
+  couple(" out", mjJNT_SLIDE, Vector3::UnitZ(), [&](double o) { return at(o).translation().z(); });
+  couple(" turn", mjJNT_HINGE, side * Vector3::UnitX(), [&](double o) {
+    const Matrix3 R = LinkPose(link, o, +1).linear();
+    return std::atan2(R(2, 1), R(1, 1));
+  });
+
+  mjsGeom* geom = mjs_addGeom(body, nullptr);
+  SetName(geom->element, name);
+  geom->type = link.shape.kind == Shape::Kind::kBox ? mjGEOM_BOX : mjGEOM_CAPSULE;
+  for (int k = 0; k < 3; ++k) geom->size[k] = link.shape.size_m[k];
+  LookLikeFinger(*geom);
+}
+
+}  // namespace
+
+AdvancePolynomial FitTipAdvance(const GripperSpec& spec) {
+  return FitToTravel(spec, [&](double opening_m) { return TipAdvance(spec, opening_m); });
+}
+
 void AddGripper(mjSpec& spec, mjsBody& tool, const CellModel& model, const RoundPhysics& physics) {
   const GripperSpec& gripper = model.gripper;
   const CellLayout& layout = model.layout;
   // Masses below the sensor sum to those of gripper and coupling.
-  const double palm_kg =
-      gripper.mass_kg + gripper.coupling_mass_kg - 2 * gripper.finger_mass_kg - kCarriageMass_kg;
+  const double links_kg = 2 * kLinkMass_kg * static_cast<double>(gripper.links.size());
+  const double palm_kg = gripper.mass_kg + gripper.coupling_mass_kg - 2 * gripper.finger_mass_kg -
+                         kCarriageMass_kg - links_kg;
   SetInertial(tool, palm_kg, Vector3(0, 0, gripper.palm_centre_m), 2e-3, 2e-3, 1e-3);
 
   mjsBody* carriage = mjs_addBody(&tool, nullptr);
@@ -173,6 +227,10 @@ void AddGripper(mjSpec& spec, mjsBody& tool, const CellModel& model, const Round
   AddFinger(*carriage, -1.0, kFingerRightJoint, kPadRightGeom, gripper, physics);
   AddCoupling(spec, "fingers_move_together", kFingerLeftJoint, kFingerRightJoint, {0, 1, 0, 0, 0});
   AddCoupling(spec, "tips_advance", kCarriageJoint, kFingerLeftJoint, FitTipAdvance(gripper).c);
+  for (const GripperSpec::Link& link : gripper.links) {
+    AddLink(spec, tool, gripper, link, X_KE, +1);
+    AddLink(spec, tool, gripper, link, X_KE, -1);
+  }
   AddGripActuator(spec, gripper.min_force_N);
 }
 

@@ -52,7 +52,7 @@ struct CellConfig {
   struct Arm : CellRole<tubetwin::Arm> {
     bool armed = false;
     double start_speed_m_s = 0.25;  ///< Of a real arm, until its first tube is placed.
-    /// Base and links 1 to 6 in their own frames (models/arm/hc10.toml), for pictures; empty
+    /// Base and links 1 to 6 in their own frames (models/arms/hc10.toml), for pictures; empty
     /// texts: plain shapes.
     std::vector<std::string> visual_meshes;
     std::string visual_units;

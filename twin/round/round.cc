@@ -8,6 +8,7 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "models/base/step_timer.h"
+#include "twin/round/archive.h"
 #include "twin/round/failure_picture.h"
 #include "twin/round/replay_round.h"
 #include "twin/round/result_files.h"
@@ -90,6 +91,12 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
   return result;
 }
 
+void WriteInputs(const std::vector<ArchivedFile>& inputs, const fs::path& out) {
+  for (const ArchivedFile& input : inputs) {
+    WriteFileAtomically((out / input.name).string(), input.text);
+  }
+}
+
 void WriteManifest(const Pipeline& pipeline, double wall_s) {
   const RoundOptions& options = pipeline.options;
   WriteJsonFile(Manifest(pipeline.scenario, pipeline.resolved_toml, options.program_version,
@@ -116,10 +123,11 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   const fs::path out(options.out_folder);
   // A given pile is archived, so that the resolved configuration runs wherever the folder is moved.
   const bool archive_pile = !scenario.pile.file.empty();
-  if (archive_pile) scenario.pile.file = "given.pile.json";
   std::vector<Recording::Visual> visuals = ScenarioVisuals(scenario, options.scenario_folder);
-  const std::vector<ArchivedFile> meshes = ArchiveMeshes(scenario, options.scenario_folder);
-  const std::string resolved = ResolvedToml(scenario);
+  Scenario archived = scenario;
+  if (archive_pile) archived.pile.file = "given.pile.json";
+  const std::vector<ArchivedFile> inputs = ArchiveInputs(archived, options.scenario_folder);
+  const std::string resolved = ResolvedToml(archived);
   ClaimResultFolder(options.out_folder, resolved, options.force);
 
   const RoundPhysics physics = ScenarioPhysics(scenario, asked.part);
@@ -129,9 +137,7 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   } else if (archive_pile) {
     SavePile(asked, (out / "given.pile.json").string());
   }
-  for (const ArchivedFile& mesh : meshes) {
-    WriteFileAtomically((out / mesh.name).string(), ReadFile(mesh.from));
-  }
+  WriteInputs(inputs, out);
   SavePile(pile, (out / "start.pile.json").string());
 
   TwinCell twin(pile, ScenarioTwin(scenario, physics, options.parallelism));
@@ -162,8 +168,11 @@ RoundResult RunCellRound(Cell& cell, const Scenario& scenario, const RoundOption
   const double began = WallClock_s();
   const fs::path out(options.out_folder);
   const Part part = LoadPart(ScenarioPartName(scenario));
-  const std::string resolved = ResolvedToml(scenario);
+  Scenario archived = scenario;
+  const std::vector<ArchivedFile> inputs = ArchiveInputs(archived, options.scenario_folder);
+  const std::string resolved = ResolvedToml(archived);
   ClaimResultFolder(options.out_folder, resolved, options.force);
+  WriteInputs(inputs, out);
   // Of a round of the twin that was here: they would be taken for this one's.
   for (const char* name : {"start.pile.json", "cell.xml", "recording.bin", kRoundCheckpointFile}) {
     fs::remove(out / name);

@@ -32,6 +32,12 @@ std::vector<double> PoseNumbers(const RigidTransform& X) {
 
 /// What the configuration leaves to the cell model, so that the resolved one says it.
 void FillFromModel(Scenario& scenario) {
+  const CalibrationConfig& given = scenario.calibration;
+  const bool scanner = !given.X_FS.empty() || !given.X_BS.empty();
+  if (scanner && !given.X_FK.empty() && !given.X_FE.empty() && !scenario.bin.X_BN.empty() &&
+      !scenario.scan.resolution.empty()) {
+    return;  // As a resolved configuration is: a recording's cell file need not be there.
+  }
   const CellModel model = LoadCellModel(scenario.cell.model);
   const CellLayout& layout = model.layout;
   const auto fill = [](std::vector<double>& x, const std::vector<double>& from) {
@@ -41,6 +47,7 @@ void FillFromModel(Scenario& scenario) {
   fill(calibration.X_FK, PoseNumbers(layout.X_FK));
   fill(calibration.X_FE, PoseNumbers(layout.X_FE));
   const bool flange = layout.scanner_mount == CellLayout::ScannerMount::kFlange;
+  scenario.nominal_scanner_pose = calibration.X_FS.empty() && calibration.X_BS.empty();
   if (flange && calibration.X_BS.empty()) fill(calibration.X_FS, PoseNumbers(layout.X_FS));
   if (!flange && calibration.X_FS.empty()) fill(calibration.X_BS, PoseNumbers(layout.X_BS));
   const Vector3& p_BN = layout.X_BN.translation();
@@ -272,21 +279,6 @@ std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario,
                        std::move(mesh)});
   }
   return visuals;
-}
-
-std::vector<ArchivedFile> ArchiveMeshes(Scenario& scenario, const std::string& folder) {
-  std::vector<ArchivedFile> files;
-  const auto archive = [&](std::string& file, const std::string& name) {
-    if (file.empty()) return;
-    const std::string path = PathIn(folder, file);
-    file = name + std::filesystem::path(path).extension().string();
-    files.push_back({path, file});
-  };
-  archive(scenario.bin.mesh, "given.bin");
-  for (std::size_t i = 0; i < scenario.cell.arm.visual_meshes.size(); ++i) {
-    archive(scenario.cell.arm.visual_meshes[i], "given.arm_" + std::to_string(i));
-  }
-  return files;
 }
 
 Pile AskedPile(const Scenario& scenario, const std::string& folder) {

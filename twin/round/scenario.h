@@ -54,6 +54,8 @@ struct Scenario {
     void Visit(ConfigVisitor& v);
   } part;
   CalibrationConfig calibration;
+  /// No layer said where the scanner is: the cell model's figure. Not a key.
+  bool nominal_scanner_pose = false;
   double rate = 1.0;
   CellConfig cell;
 
@@ -102,14 +104,6 @@ Bin ScenarioBin(const Scenario& scenario, const std::optional<std::array<double,
 /// The scenario's meshes for pictures. Throws as ScenarioBin does, and Error(kConfig) for more
 /// meshes than the arm has links.
 std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario, const std::string& folder);
-
-/// A file of the scenario and its name in the result folder.
-struct ArchivedFile {
-  std::string from, name;
-};
-/// Names the scenario's mesh files by what their copies in the result folder are called, so that
-/// the resolved configuration runs wherever the folder is moved, and says what to copy.
-std::vector<ArchivedFile> ArchiveMeshes(Scenario& scenario, const std::string& folder);
 
 /// The pile of `scenario.pile.file` as it is, with the scenario's part and bin. Precondition: a
 /// file is given. Throws as LoadPile does.

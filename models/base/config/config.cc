@@ -231,6 +231,7 @@ void ConfigSource::AddFile(const std::string& path) {
 
 void ConfigSource::AddText(const std::string& toml, const std::string& name) {
   Merge(impl_->layers, config_internal::ParseLayer(toml, name));
+  if (impl_->place.empty()) impl_->place = name;
 }
 
 void ConfigSource::AddOverride(const std::string& text) {

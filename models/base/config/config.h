@@ -114,6 +114,12 @@ class ConfigSource {
   /// where the field takes one, or a list of lists where it takes a list, spans; all else is kept.
   std::vector<ConfigSource> ExpandLists(const std::function<void(ConfigVisitor&)>& visit) const;
 
+  /// "file:line:column" of a key of the top level; empty when no layer has it.
+  std::string PlaceOf(const std::string& key) const;
+  /// Where the whole begins: the first layer's name, or the place of the table that it was taken
+  /// from.
+  const std::string& place() const;
+
   /// Every key ("a.b") with its value as a person writes it, tables in order.
   std::vector<std::pair<std::string, std::string>> Texts() const;
 

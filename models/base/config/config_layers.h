@@ -63,6 +63,7 @@ namespace tubetwin {
 
 struct ConfigSource::Impl {
   config_internal::Node::Table layers;  ///< Merged so far.
+  std::string place;                    ///< Of the first layer, or of the table it was taken from.
 };
 
 }  // namespace tubetwin

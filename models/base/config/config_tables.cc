@@ -128,7 +128,9 @@ std::vector<ConfigSource> ConfigSource::TakeTables(const std::string& key) {
   for (Node& item : *list) {
     auto* table = std::get_if<Node::Table>(&item.value);
     if (table == nullptr) Fail(item, key, "a table is needed, found " + Describe(item));
-    out.emplace_back().impl_->layers = std::move(*table);
+    ConfigSource& taken = out.emplace_back();
+    taken.impl_->layers = std::move(*table);
+    taken.impl_->place = item.place;
   }
   return out;
 }
@@ -137,6 +139,7 @@ ConfigSource ConfigSource::TakeTable(const std::string& key) {
   ConfigSource out;
   if (Find(impl_->layers, key) == nullptr) return out;
   Node node = Take(impl_->layers, key);
+  out.impl_->place = node.place;
   auto* table = std::get_if<Node::Table>(&node.value);
   if (table == nullptr) Fail(node, key, "a table {a.b = value} is needed, found " + Describe(node));
   for (auto& [name, below] : *table) {
@@ -185,6 +188,13 @@ std::vector<ConfigSource> ConfigSource::ExpandLists(
   }
   return out;
 }
+
+std::string ConfigSource::PlaceOf(const std::string& key) const {
+  const Node* node = Find(impl_->layers, key);
+  return node == nullptr ? "" : node->key_place;
+}
+
+const std::string& ConfigSource::place() const { return impl_->place; }
 
 std::vector<std::pair<std::string, std::string>> ConfigSource::Texts() const {
   std::vector<std::pair<std::string, std::string>> out;
