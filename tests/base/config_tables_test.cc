@@ -110,4 +110,17 @@ TEST_CASE("keys are told with their values as a person writes them") {
   CHECK(texts == expected);
 }
 
+TEST_CASE("places of keys and tables are told, of missing keys none") {
+  ConfigSource source = Source("views = 2\n[[point]]\nx = 1\n[[point]]\ny = 2\n");
+  CHECK(source.place() == "f.toml");
+  CHECK(source.PlaceOf("views") == "f.toml:1:1");
+  CHECK(source.PlaceOf("size_m").empty());
+  const std::vector<ConfigSource> points = source.TakeTables("point");
+  REQUIRE(points.size() == 2);
+  CHECK(points[0].place().rfind("f.toml:2:", 0) == 0);
+  CHECK(points[1].place().rfind("f.toml:4:", 0) == 0);
+  CHECK(points[1].PlaceOf("y") == "f.toml:5:1");
+  CHECK(points[1].PlaceOf("x").empty());
+}
+
 }  // namespace tubetwin

@@ -235,6 +235,7 @@ TEST_CASE("Closed forms hold for other offsets and senses of axes", "[unit]") {
     // Axis 1 and the wrist's axes may lean.
     arm.joints[0].axis = (arm.joints[0].axis + Vector3(0.2, 0.1, 0)).normalized();
     arm.joints[5].axis = (arm.joints[5].axis + Vector3(0.1, 0.1, 0.2)).normalized();
+    if (ur) arm.joints[5].origin_in_parent_m = 0.117 * arm.joints[5].axis;
     const std::string inverse = arm.inverse;
     if (!ur) arm.joints[4].axis = (arm.joints[4].axis + Vector3(0, 0.1, 0.3)).normalized();
     CheckAgreement(arm, inverse, "numeric", 8);
@@ -307,7 +308,7 @@ TEST_CASE("A general pose has eight solutions where wrist, elbow and shoulder ha
   CHECK(InverseAll(gp, FlangePose(gp, q)).size() == 8);
 }
 
-TEST_CASE("Singular poses are solved, and once", "[unit]") {
+TEST_CASE("Singular poses are solved, a continuum by some of its members", "[unit]") {
   for (const std::string name : {"gp12", "ur10e"}) {
     for (const bool numeric : {false, true}) {
       ArmModel arm = LoadArm(name);
@@ -317,7 +318,7 @@ TEST_CASE("Singular poses are solved, and once", "[unit]") {
       JointVector q;
       q << 0.3, -0.4, 0.1, 0.5, 0.0, 0.9;
       const RigidTransform X_BF = FlangePose(arm, q);
-      REQUIRE(Manipulability(arm, q) < 1e-9);
+      REQUIRE(Manipulability(arm, q) < 1e-6);
       const auto all = InverseAll(arm, X_BF);
       CHECK_FALSE(all.empty());
       CHECK(all.size() <= 16);

@@ -29,7 +29,7 @@ constexpr double kNear = 1e-4;              // error from which plain Newton ste
 constexpr double kSame_rad = 1e-5;          // solutions closer than this are one
 constexpr double kSingular = 3e-5;          // smallest singular value at a singular pose
 constexpr double kSameSingular_rad = 1e-4;  // there rounding moves joints by its square root
-constexpr double kSlide_rad = 0.2;          // step along a continuum
+constexpr int kMostSingular = 8;            // members that stand for a continuum
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
@@ -86,51 +86,40 @@ std::optional<JointVector> Descend(const ArmModel& arm, const RigidTransform& X_
   return std::nullopt;
 }
 
-/// Of the continuum that a singular pose can have, the member nearest to all joints at zero, so
-/// that it is found once; q itself where the pose is regular or the solution stands alone.
-JointVector RepresentativeOf(const ArmModel& arm, const RigidTransform& X_BF, JointVector q,
-                             bool& singular) {
-  constexpr int kSlides = 60;
-  for (int i = 0; i < kSlides; ++i) {
-    const Kinematics here(arm, q);
-    const Eigen::SelfAdjointEigenSolver<JacobianMatrix> eigen(here.J.transpose() * here.J);
-    singular = eigen.eigenvalues()[0] < kSingular * kSingular;
-    if (!singular) return q;
-    const JointVector free = eigen.eigenvectors().col(0);
-    for (int k = 0; k < kNumJoints; ++k) q[k] = WrapToPi(q[k]);
-    const double slide = std::clamp(-free.dot(q), -kSlide_rad, kSlide_rad);
-    if (std::abs(slide) < 0.1 * kSameSingular_rad) return q;
-    const auto next = PolishJoints(arm, X_BF, q + slide * free, 8);
-    if (!next || LargestDifference(*next, q) < 0.1 * std::abs(slide)) return q;
-    q = *next;
-  }
-  return q;
+/// Whether solutions may lie side by side here: a continuum, or two that are about to part.
+bool IsSingular(const ArmModel& arm, const JointVector& q) {
+  const JacobianMatrix J = Kinematics(arm, q).J;
+  const Eigen::SelfAdjointEigenSolver<JacobianMatrix> eigen(J * J.transpose(),
+                                                            Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues()[0] < kSingular * kSingular;
 }
 
 struct Found {
   JointVector q;
+  bool singular = false;
   int meetings = 1;
 };
 
 std::vector<JointVector> SolveNumeric(const ArmModel& arm, const RigidTransform& X_BF) {
   std::vector<Found> found;
+  int singular_ones = 0;
   for (int start = 0; start < kMostStarts; ++start) {
     if (found.empty() && start >= kStartsWithoutAny) break;
-    const bool all_met = std::all_of(found.begin(), found.end(),
-                                     [](const Found& f) { return f.meetings >= kMeetings; });
+    const bool all_met = std::all_of(found.begin(), found.end(), [](const Found& f) {
+      return f.singular || f.meetings >= kMeetings;
+    });
     if (start >= kFewestStarts && !found.empty() && all_met) break;
-    auto q = Descend(arm, X_BF, Start(start));
+    const auto q = Descend(arm, X_BF, Start(start));
     if (!q) continue;
-    bool singular = false;
-    *q = RepresentativeOf(arm, X_BF, *q, singular);
+    const bool singular = IsSingular(arm, *q);
     const double same_rad = singular ? kSameSingular_rad : kSame_rad;
     const auto known = std::find_if(found.begin(), found.end(), [&](const Found& f) {
       return LargestDifference(f.q, *q) < same_rad;
     });
-    if (known == found.end()) {
-      found.push_back({*q});
-    } else {
+    if (known != found.end()) {
       ++known->meetings;
+    } else if (!singular || ++singular_ones <= kMostSingular) {
+      found.push_back({*q, singular});
     }
   }
   std::vector<JointVector> out;
