@@ -38,10 +38,11 @@ std::vector<double> ViewOffsets(double extent_m, double field_m) {
 /// Looking straight down from (x, y), height `z`, all in B; or, when the projector stands beyond
 /// the bin's wall at `wall_x` and that wall's shadow could hide a tube, from inside the bin, tilted
 /// outward: then the projector is inside too and lights the floor up to the wall.
-RigidTransform LookFrom(double x, double y, double z, double wall_x, double wall_m,
-                        double floor_z) {
-  // A narrower shadow hides no tube: the thinnest, 20 mm, rises out of it.
-  constexpr double kMaxShadow_m = 0.022;
+RigidTransform LookFrom(double x, double y, double z, double wall_x, double wall_m, double floor_z,
+                        double radius_m) {
+  // A narrower shadow hides no tube: it rises out of it. Thick ones are looked at like those of
+  // 20 mm.
+  const double max_shadow_m = 2.2 * std::min(radius_m, kThinnestUsual_m);
   // Just enough that the wall is still seen up to kCovered_m, as from the place straight above.
   const double tilt = Radians(10.0);
   constexpr double kInside_m = 0.004;
@@ -52,14 +53,14 @@ RigidTransform LookFrom(double x, double y, double z, double wall_x, double wall
   const Vector3 p_BP = Vector3(x, y, z) + down * p_SP;
   const double rim_z = floor_z + wall_m;
   const double shadow_m = wall_m * (p_BP.x() - wall_x) / (p_BP.z() - rim_z);
-  if (shadow_m < kMaxShadow_m) return MakeTransform(down, Vector3(x, y, z));
+  if (shadow_m < max_shadow_m) return MakeTransform(down, Vector3(x, y, z));
   const Matrix3 tilted = RotY(-tilt) * down;
   return MakeTransform(tilted, Vector3(wall_x - kInside_m - (tilted * p_SP).x(), y, z));
 }
 
 }  // namespace
 
-std::vector<RigidTransform> DefaultScanPoses(const Bin& bin) {
+std::vector<RigidTransform> DefaultScanPoses(const Bin& bin, double radius_m) {
   const ScannerSpec spec;
   const CellLayout layout;
   const double tips_below_m =
@@ -82,7 +83,7 @@ std::vector<RigidTransform> DefaultScanPoses(const Bin& bin) {
     forward = !forward;
     for (const double y : row) {
       X_BS.push_back(LookFrom(p_BN.x() + x, p_BN.y() + y, p_BN.z() + height_m,
-                              p_BN.x() + 0.5 * extent_x_m, bin.wall_m(), p_BN.z()));
+                              p_BN.x() + 0.5 * extent_x_m, bin.wall_m(), p_BN.z(), radius_m));
     }
   }
   return X_BS;

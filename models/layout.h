@@ -32,10 +32,13 @@ struct CellLayout {
   double carry_height_m = 0.45;
 };
 
+/// Tubes of at least this radius are looked at alike; thinner ones hide in narrower shadows.
+inline constexpr double kThinnestUsual_m = 0.010;
+
 /// The places to scan from: scanner poses in B, camera looking straight down, the long image side
 /// along B's x. Where the projector would stand beyond a wall so high that its shadow could hide a
-/// tube, the scanner looks from inside that wall, tilted outward.
-std::vector<RigidTransform> DefaultScanPoses(const Bin& bin);
+/// tube of `radius_m`, the scanner looks from inside that wall, tilted outward.
+std::vector<RigidTransform> DefaultScanPoses(const Bin& bin, double radius_m = kThinnestUsual_m);
 
 /// Masses below the sensor's tool face, for the tare and for payload. kg, position in K.
 inline constexpr double kGripperMass_kg = 0.93;

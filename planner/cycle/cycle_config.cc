@@ -15,12 +15,12 @@ void ScanConfig::Visit(ConfigVisitor& v) {
   v.Field("rescan_all", "look everywhere again before every pick", rescan_all);
 }
 
-std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const Bin& bin) {
+std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const Bin& bin, double radius_m) {
   if (config.overhead_m > 0.0) {
     const RigidTransform X_NS = MakeTransform(RotX(kPi), Vector3(0, 0, config.overhead_m));
     return {bin.X_BN * X_NS};
   }
-  std::vector<RigidTransform> poses_BS = DefaultScanPoses(bin);
+  std::vector<RigidTransform> poses_BS = DefaultScanPoses(bin, radius_m);
   poses_BS.resize(std::min(poses_BS.size(), static_cast<std::size_t>(config.views)));
   return poses_BS;
 }

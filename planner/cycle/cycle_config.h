@@ -33,6 +33,6 @@ struct CycleConfig : PathConfig {
 };
 
 /// Where a round looks from, X_BS.
-std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const Bin& bin);
+std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const Bin& bin, double radius_m);
 
 }  // namespace tubetwin
