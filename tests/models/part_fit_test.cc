@@ -64,7 +64,7 @@ TEST_CASE("A weight is judged by the grip's friction", "[unit]") {
   // Friction holds 20 N, at most 40 N; carrying takes 10 N a kilogram.
   const auto with = [&](double mass_kg) {
     part.mass_kg = mass_kg;
-    return About("in the grip", part, cell);
+    return About("weight in the grip", part, cell);
   };
   CheckVerdict(with(1.99), Verdict::kOk);
   CheckVerdict(with(2.01), Verdict::kDoubtful);

@@ -27,7 +27,9 @@ constexpr double kContradiction = 2.0;
 [[noreturn]] void Usage(const std::string& message) { throw Error(ErrorKind::kUsage, message); }
 
 /// To so many steps per unit: prints short.
-double Rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
+double Rounded(double value, double per_unit) {
+  return std::round(value * per_unit) / per_unit + 0.0;  // Never -0.
+}
 
 /// To so many significant digits.
 double Significant(double value, int digits) {
