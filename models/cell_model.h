@@ -19,6 +19,9 @@ struct CellFiles {
   ModelFile cell, arm, gripper, wrist, scanner;
 };
 
+/// Tubes of at least this radius are looked at alike; thinner ones hide in narrower shadows.
+inline constexpr double kThinnestUsual_m = 0.010;
+
 /// A robotic cell as data: which arm, gripper, wrist sensor and scanner, and where they stand. Read
 /// from a cell file (models/cells) that names one file for each device; passed explicitly, never a
 /// global. What says how to talk to the devices is not part of it.
@@ -61,7 +64,8 @@ std::vector<Shape> StandingShapes(const CellModel& model);
 /// a stand there is one. On the flange: those of the layout, or else views straight down, the long
 /// side of the image along B's x, that cover the bin. Where the projector would stand beyond a wall
 /// so high that its shadow could hide a tube, the scanner looks from inside that wall, tilted
-/// outward.
-std::vector<RigidTransform> ScanPosesOf(const CellModel& model, const Bin& bin);
+/// outward. Tubes of `radius_m` are to be seen.
+std::vector<RigidTransform> ScanPosesOf(const CellModel& model, const Bin& bin,
+                                        double radius_m = kThinnestUsual_m);
 
 }  // namespace tubetwin

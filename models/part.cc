@@ -33,20 +33,20 @@ void CheckOrder(const std::vector<double>& range, const char* key, ErrorKind kin
 
 // A fixed shape is a line that physics can build.
 void CheckCenterline(const Part& part, ErrorKind kind, const std::string& source) {
-  constexpr double kShortestPiece_m = 0.001, kLargestDifference = 0.02;
+  constexpr double kLargestDifference = 0.02;
   const std::size_t numbers = part.centerline_m.size();
   if (part.shape != "fixed") {
     if (numbers == 0) return;
     throw Error(kind, source + ": centerline_m is given, but shape is \"" + part.shape +
                           "\"; only \"fixed\" has one");
   }
-  if (numbers < 6 || numbers % 3 != 0 || numbers > 3 * 200) {
+  if (numbers < 6 || numbers % 3 != 0 || numbers > 3 * kMaxShapePoints) {
     throw Error(kind, source + ": centerline_m has " + std::to_string(numbers) +
                           " numbers; shape \"fixed\" needs x y z of 2 to 200 points");
   }
   const Polyline line = part.centerline();
   for (std::size_t i = 1; i < line.size(); ++i) {
-    if ((line[i] - line[i - 1]).norm() >= kShortestPiece_m) continue;
+    if ((line[i] - line[i - 1]).norm() >= kMinShapePiece_m) continue;
     throw Error(kind, source + ": centerline_m: points " + std::to_string(i - 1) + " and " +
                           std::to_string(i) + " are closer than 1 mm");
   }
@@ -63,6 +63,8 @@ void CheckPart(const Part& part, ErrorKind kind, const std::string& source) {
   CheckOrder(part.bending_stiffness_range_Nm2, "bending_stiffness_range_Nm2", kind, source);
   CheckOrder(part.bends, "bends", kind, source);
   CheckOrder(part.bend_deg, "bend_deg", kind, source);
+  CheckOrder({part.search.extra_min, part.search.extra_max}, "search.extra_min, extra_max", kind,
+             source);
   if (part.name.empty()) throw Error(kind, source + ": name is empty; a part needs one");
   if (part.length_m < 4.0 * part.radius_m) {
     throw Error(kind, source + ": length_m " + Number(part.length_m) + " is below four radii (" +
@@ -99,12 +101,13 @@ void Part::Visit(ConfigVisitor& v) {
   v.Choice("kind", "rigid: one body; hose: a bending chain of links", kind, {"rigid", "hose"});
   v.Field("radius_m", "outer radius", radius_m, {0.003, 0.04});
   v.Field("length_m", "length along the centerline", length_m, {0.05, 2.0});
-  v.Field("mass_kg", "mass of one tube", mass_kg, {0.001, 5.0});
+  v.Field("mass_kg", "mass of one tube", mass_kg, {kMinMass_kg, kMaxMass_kg});
   v.Field("friction", "nominal friction, tube on tube and on the bin", friction, {0.01, 3.0});
   v.Field("friction_range", "friction is drawn between these", friction_range, 2, {0.01, 3.0});
-  v.Field("bending_stiffness_Nm2", "E times I, hoses only", bending_stiffness_Nm2, {0.005, 50.0});
+  v.Field("bending_stiffness_Nm2", "E times I, hoses only", bending_stiffness_Nm2,
+          {kMinStiffness_Nm2, kMaxStiffness_Nm2});
   v.Field("bending_stiffness_range_Nm2", "bending stiffness is drawn between these",
-          bending_stiffness_range_Nm2, 2, {0.005, 50.0});
+          bending_stiffness_range_Nm2, 2, {kMinStiffness_Nm2, kMaxStiffness_Nm2});
   v.Field("links", "rigid links of a hose", links, {8, 12});
   v.Choice("shape",
            "how random shapes are drawn: arcs (planar bends), hooks (a bend near each end), "
@@ -118,6 +121,27 @@ void Part::Visit(ConfigVisitor& v) {
           colour_rgb, 3, {0, 1});
   v.Field("gloss", "share of points that the scanner loses where the surface mirrors its light",
           gloss, {0, 1});
+  v.Section("search", "how often another tube comes along, as the search among motions takes it",
+            search);
+}
+
+void PartSearch::Visit(ConfigVisitor& v) {
+  v.Field("fitted_to",
+          "name of the part with which these numbers were measured; for other parts they are a "
+          "default, not measured",
+          fitted_to);
+  v.Field("extra_per_m",
+          "probability that another tube comes along, per metre of predicted displacement beyond "
+          "extra_quiet_m (fitted to hose_b by 164 lifts; default for other parts, not measured)",
+          extra_per_m, {0.0, 100.0});
+  v.Field("extra_quiet_m", "displacement in metres that brings none along", extra_quiet_m,
+          {0.0, 10.0});
+  v.Field("extra_min", "smallest such probability", extra_min, {0.0, 1.0});
+  v.Field("extra_max", "largest such probability", extra_max, {0.0, 1.0});
+  v.Field("extra_prior_samples", "so many samples does that probability count as, of hoses",
+          extra_prior_samples, {0.0, 1000.0});
+  v.Field("extra_after_shedding", "that probability after a motion that sheds by tilting",
+          extra_after_shedding, {0.0, 1.0});
 }
 
 Polyline Part::centerline() const {

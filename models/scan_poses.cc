@@ -31,9 +31,10 @@ std::vector<double> ViewOffsets(double extent_m, double field_m,
 /// the bin's wall at `wall_x` and that wall's shadow could hide a tube, from inside the bin, tilted
 /// outward: then the projector is inside too and lights the floor up to the wall.
 RigidTransform LookFrom(const ScannerSpec& spec, double x, double y, double z, double wall_x,
-                        double wall_m, double floor_z) {
-  // A narrower shadow hides no tube: the thinnest, 20 mm, rises out of it.
-  constexpr double kMaxShadow_m = 0.022;
+                        double wall_m, double floor_z, double radius_m) {
+  // A narrower shadow hides no tube: it rises out of it. Thick ones are looked at like those of
+  // 20 mm.
+  const double max_shadow_m = 2.2 * std::min(radius_m, kThinnestUsual_m);
   // Just enough that the wall is still seen as high as from the place straight above.
   const double tilt = Radians(10.0);
   constexpr double kInside_m = 0.004;
@@ -43,13 +44,14 @@ RigidTransform LookFrom(const ScannerSpec& spec, double x, double y, double z, d
   const Vector3 p_BP = Vector3(x, y, z) + down * p_SP;
   const double rim_z = floor_z + wall_m;
   const double shadow_m = wall_m * (p_BP.x() - wall_x) / (p_BP.z() - rim_z);
-  if (shadow_m < kMaxShadow_m) return MakeTransform(down, Vector3(x, y, z));
+  if (shadow_m < max_shadow_m) return MakeTransform(down, Vector3(x, y, z));
   const Matrix3 tilted = RotY(-tilt) * down;
   return MakeTransform(tilted, Vector3(wall_x - kInside_m - (tilted * p_SP).x(), y, z));
 }
 
 /// Views straight down that cover the bin.
-std::vector<RigidTransform> CoveringPoses(const CellModel& model, const Bin& bin) {
+std::vector<RigidTransform> CoveringPoses(const CellModel& model, const Bin& bin,
+                                          double radius_m) {
   const ScannerSpec& spec = model.scanner;
   const CellLayout& layout = model.layout;
   const double tips_below_m =
@@ -73,7 +75,7 @@ std::vector<RigidTransform> CoveringPoses(const CellModel& model, const Bin& bin
     forward = !forward;
     for (const double y : row) {
       X_BS.push_back(LookFrom(spec, p_BN.x() + x, p_BN.y() + y, p_BN.z() + height_m,
-                              p_BN.x() + 0.5 * extent_x_m, bin.wall_m(), p_BN.z()));
+                              p_BN.x() + 0.5 * extent_x_m, bin.wall_m(), p_BN.z(), radius_m));
     }
   }
   return X_BS;
@@ -81,11 +83,12 @@ std::vector<RigidTransform> CoveringPoses(const CellModel& model, const Bin& bin
 
 }  // namespace
 
-std::vector<RigidTransform> ScanPosesOf(const CellModel& model, const Bin& bin) {
+std::vector<RigidTransform> ScanPosesOf(const CellModel& model, const Bin& bin,
+                                        double radius_m) {
   const CellLayout& layout = model.layout;
   if (layout.scanner_mount == CellLayout::ScannerMount::kStand) return {layout.X_BS};
   if (!layout.scan_poses_BS.empty()) return layout.scan_poses_BS;
-  return CoveringPoses(model, bin);
+  return CoveringPoses(model, bin, radius_m);
 }
 
 }  // namespace tubetwin

@@ -15,4 +15,11 @@ std::string Join(const std::vector<std::string>& parts, std::string_view separat
 /// Shortest decimal text that reads back as the same double ("0.25", "1e-05").
 std::string Number(double value);
 
+/// Whether the bytes are well-formed UTF-8 without control characters: what TOML, JSON and a
+/// terminal take as it is.
+bool IsPlainUtf8(std::string_view text);
+
+/// The text with every byte that breaks IsPlainUtf8 as \xNN: names of files may be any bytes.
+std::string Printable(std::string_view text);
+
 }  // namespace tubetwin

@@ -223,6 +223,21 @@ std::vector<Mesh> ConnectedPieces(const Mesh& mesh) {
   return pieces;
 }
 
+std::optional<double> EnclosedVolume(const Mesh& mesh) {
+  std::map<std::pair<int, int>, int> edges;
+  for (const auto& face : mesh.faces) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = face[k], b = face[(k + 1) % 3];
+      ++edges[{std::min(a, b), std::max(a, b)}];
+    }
+  }
+  for (const auto& [edge, faces] : edges) {
+    if (faces != 2) return std::nullopt;
+  }
+  if (mesh.faces.empty()) return std::nullopt;
+  return SignedVolume(mesh) / 6.0;
+}
+
 std::vector<MeshPoint> SampleSurface(const Mesh& mesh, int count) {
   const auto normals = CornerNormals(mesh);
   std::vector<double> until(mesh.faces.size());

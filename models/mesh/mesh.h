@@ -39,6 +39,10 @@ void ScaleToMetres(Mesh& mesh, const std::string& units, const std::string& sour
 /// wound them.
 std::vector<Mesh> ConnectedPieces(const Mesh& mesh);
 
+/// What a surface without rims encloses, m^3 for metres; nothing where an edge has not exactly two
+/// faces. The faces are wound outwards (a piece of ConnectedPieces).
+std::optional<double> EnclosedVolume(const Mesh& mesh);
+
 /// A point of a surface, with the part of the surface that it stands for.
 struct MeshPoint {
   Vector3 p = Vector3::Zero();

@@ -25,8 +25,6 @@ constexpr double kClosestRadii = 1.5;
 /// degrees is as often true as false, at 110 mm one of 17. Straight long gaps are more often chance
 /// than short ones.
 constexpr double kOdds = 3.0;
-constexpr double kEven_m = 0.097;
-constexpr double kStraightest_m = 0.018;
 constexpr double kLongGap_m = 0.1;
 constexpr double kLongGapUnit_m = 0.1;
 /// Cost of a way that no view confirms to be hidden, and of leaving through a closed end.

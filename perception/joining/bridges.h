@@ -8,6 +8,10 @@
 
 namespace tubetwin {
 
+/// A bridge whose bending energy times its squared gap is kEven_m less kStraightest_m is as often
+/// true as false: for an arc, its turn squared times the gap.
+inline constexpr double kEven_m = 0.097, kStraightest_m = 0.018;
+
 /// Says whether a tube can pass where no part of it was found: hidden behind something, or where no
 /// view looks. Keeps references: views and bin must outlive it. Thread safe.
 class OccludedSpace {

@@ -6,6 +6,7 @@
 #include "models/base/error.h"
 #include "perception/fragment/local_radius.h"
 #include "perception/part_import/mesh_axis.h"
+#include "perception/part_import/wall_sections.h"
 
 namespace tubetwin {
 namespace {
@@ -18,6 +19,10 @@ constexpr double kMinRound = 0.25;
 constexpr double kShortest = 4.0;  ///< Least length in radii.
 /// Parts end at 3 and 40 mm and at 2 m (models/part.h); a first look may be this much off.
 constexpr double kThinnest_m = 0.003, kThickest_m = 0.04, kLongest_m = 2.0, kLeeway = 1.1;
+/// Sections whose radius is this much off the median are counted as another radius.
+constexpr double kOtherRadius = 0.05;
+/// Sections of less wall say little of a radius, nor do those of rounded ends.
+constexpr double kWholeSection = 0.8, kUprightWall = 0.2;
 /// Surface further out than this many radii is not the tube's, and how much of that may be.
 constexpr double kOutside = 1.15, kMaxOutside = 0.02;
 
@@ -109,6 +114,24 @@ MeshTube Measure(const Mesh& mesh, const Polyline& line, double radius_m) {
   return tube;
 }
 
+/// Least and largest radius along the axis, and how much of it has another radius than most.
+void MeasureSections(const std::vector<WallSection>& sections, MeshTube& tube) {
+  std::vector<double> radii;
+  for (const WallSection& section : sections) {
+    if (section.seen < kWholeSection || section.slope > kUprightWall) continue;
+    radii.push_back(section.radius_m);
+  }
+  if (radii.empty()) return;
+  std::sort(radii.begin(), radii.end());
+  tube.min_radius_m = radii.front();
+  tube.max_radius_m = radii.back();
+  const double median = radii[radii.size() / 2];
+  const auto other = std::count_if(radii.begin(), radii.end(), [&](double radius) {
+    return std::abs(radius / median - 1.0) > kOtherRadius;
+  });
+  tube.other_radius_share = static_cast<double>(other) / static_cast<double>(radii.size());
+}
+
 /// Share of the surface that lies beyond the tube.
 double ShareOutside(const Mesh& mesh, const MeshTube& tube) {
   constexpr int kSamples = 10'000;
@@ -135,13 +158,23 @@ bool RunsIntoItself(const MeshTube& tube) {
                  TangentAt(tube.line, tube.length_m, window_m));
 }
 
+/// Whether a second axis is a branch. Shorter ones, and those about a flange's rim, are surface
+/// outside of the tube.
+bool LeadsAway(const Polyline& branch, const MeshTube& tube) {
+  constexpr double kAway = 3.0;  // Radii.
+  return Length(branch) >= kShortest * tube.radius_m &&
+         std::any_of(branch.begin(), branch.end(), [&tube](const Vector3& p) {
+           return Closest(tube.line, p).distance_m > kAway * tube.radius_m;
+         });
+}
+
 MeshTube Judge(MeshTube tube, const std::vector<Polyline>& axes, const std::vector<Mesh>& pieces) {
   const auto refuse = [&tube](MeshVerdict verdict, const std::string& reason) {
     tube.verdict = verdict;
     tube.reason = reason;
   };
   const double r = tube.radius_m;
-  if (axes.size() > 1) {
+  if (axes.size() > 1 && LeadsAway(axes[1], tube)) {
     refuse(MeshVerdict::kBranches, "it branches: besides an axis of " + Mm(tube.length_m) +
                                        " there is one of " + Mm(Length(axes[1])) +
                                        "; a tube has one axis and two ends");
@@ -216,6 +249,18 @@ MeshTube FindTubeOfMesh(const Mesh& mesh, Parallelism parallelism) {
                    "it is round with a radius of " + Mm(local.radius_m) +
                        ", but about no axis of at least four radii; that is no tube");
   }
+  std::vector<MeshPoint> ends = FaceCorners(body);
+  ends.insert(ends.end(), surface.begin(), surface.end());
+  const SectionedAxis axis =
+      CentreInSections(WallCutter(body), ends, axes.front(), radius_m, parallelism);
+  if (axis.line.empty()) {
+    return Refusal(MeshVerdict::kOpenWall,
+                   "about its axis of " + Mm(tube.length_m) + " there is wall on less than " +
+                       "60 % of the way around; a tube is closed all around");
+  }
+  tube = Measure(body, axis.line, radius_m);
+  MeasureSections(axis.sections, tube);
+  if (pieces.size() == 1) tube.volume_m3 = EnclosedVolume(body);
   return Judge(std::move(tube), axes, pieces);
 }
 

@@ -18,7 +18,7 @@ void ScanConfig::Visit(ConfigVisitor& v) {
 }
 
 std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const CellModel& model,
-                                      const Bin& bin) {
+                                      const Bin& bin, double radius_m) {
   if (config.overhead_m > 0.0) {
     if (model.layout.scanner_mount == CellLayout::ScannerMount::kStand) {
       throw Error(ErrorKind::kConfig, "scan.overhead_m: is " + Number(config.overhead_m) +
@@ -28,7 +28,7 @@ std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const CellModel&
     const RigidTransform X_NS = MakeTransform(RotX(kPi), Vector3(0, 0, config.overhead_m));
     return {bin.X_BN * X_NS};
   }
-  std::vector<RigidTransform> poses_BS = ScanPosesOf(model, bin);
+  std::vector<RigidTransform> poses_BS = ScanPosesOf(model, bin, radius_m);
   poses_BS.resize(std::min(poses_BS.size(), static_cast<std::size_t>(config.views)));
   return poses_BS;
 }

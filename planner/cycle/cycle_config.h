@@ -32,9 +32,9 @@ struct CycleConfig : PathConfig {
   void Visit(ConfigVisitor& v);
 };
 
-/// Where a round looks from, X_BS: at least one. Throws Error(kConfig) when an overhead view is
+/// Where a round looks from, X_BS, to see tubes of `radius_m`: at least one. Throws Error(kConfig) when an overhead view is
 /// asked of a scanner on a stand.
 std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const CellModel& model,
-                                      const Bin& bin);
+                                      const Bin& bin, double radius_m);
 
 }  // namespace tubetwin

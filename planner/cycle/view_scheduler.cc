@@ -40,7 +40,8 @@ std::vector<bool> MovedWith(const std::vector<PerceivedTube>& tubes, int tube_id
 }  // namespace
 
 ViewScheduler::ViewScheduler(CycleContext& context) : context_(context) {
-  poses_BS_ = ScanPoses(context.setup.scan, context.cell.model, context.cell.bin);
+  poses_BS_ = ScanPoses(context.setup.scan, context.cell.model, context.cell.bin,
+                        context.setup.part.radius_m);
   views_.resize(poses_BS_.size());
   ages_.assign(poses_BS_.size(), Age::kNever);
   taken_.assign(poses_BS_.size(), false);

@@ -197,7 +197,7 @@ class PickPlanner {
       if (score != nullptr) {
         option.plan.prediction = Prediction{score->displacement_m, score->extra_probability,
                                             static_cast<int>(score->samples.size())};
-        option.plan.cost += config_.weight_extra * ExtraProbability(*score, problem_.part, config_);
+        option.plan.cost += config_.weight_extra * ExtraProbability(*score, problem_.part);
       }
       option.plan.note =
           option.rank == Rank::kJams ? "the motion jammed in the simulator" : target.doubt;

@@ -39,17 +39,6 @@ void SearchConfig::Visit(ConfigVisitor& v) {
            "leao2020 profile, which picks no strongly occluded tube and escapes along the joint",
            classes, {"crossings", "occluded_joints"});
   v.Field("exclude_free", "free tubes stay but may not be chosen", exclude_free);
-  v.Field("extra_per_m",
-          "probability that another tube comes along, per metre of predicted displacement beyond "
-          "extra_quiet_m (fitted to hose_b)",
-          extra_per_m, {0.0, 100.0});
-  v.Field("extra_quiet_m", "displacement that brings none along", extra_quiet_m, {0.0, 10.0});
-  v.Field("extra_min", "smallest such probability", extra_min, {0.0, 1.0});
-  v.Field("extra_max", "largest such probability", extra_max, {0.0, 1.0});
-  v.Field("extra_prior_samples", "so many samples does that probability count as, of hoses",
-          extra_prior_samples, {0.0, 1000.0});
-  v.Field("extra_after_shedding", "that probability after a motion that sheds by tilting",
-          extra_after_shedding, {0.0, 1.0});
 }
 
 void NudgeConfig::Visit(ConfigVisitor& v) {

@@ -38,16 +38,6 @@ struct SearchConfig {
   std::string classes = "crossings";
   bool exclude_free = false;  ///< Free tubes stay but may not be chosen.
 
-  /// How often another tube comes along by the displacement that one roll-out predicts: a line from
-  /// `extra_quiet_m` on, between two bounds, that counts as `extra_prior_samples` samples. Fitted
-  /// to 164 lifts of hose_b (tests/benchmark/lifts.sh, threaded piles, seeds 1 to 23): 0 of 34
-  /// below 5 cm, 1 of 32 to 10 cm, 17 % to 20 cm, 50 % to 30 cm, 71 % to 50 cm, 89 % beyond.
-  double extra_per_m = 2.2, extra_quiet_m = 0.05, extra_min = 0.02, extra_max = 0.9;
-  double extra_prior_samples = 5.0;
-  /// After a motion that sheds by tilting, the displacement says nothing: a constant that counts as
-  /// one sample.
-  double extra_after_shedding = 0.15;
-
   bool by_occluded_joints() const { return classes == "occluded_joints"; }
   void Visit(ConfigVisitor& v);
 };

@@ -48,14 +48,15 @@ Rank RankOf(bool free, bool doubtful, const CandidateScore* score) {
   return free ? Rank::kDoubtfulFree : Rank::kDoubtfulCovered;
 }
 
-double ExtraProbability(const CandidateScore& score, const Part& part, const SearchConfig& config) {
+double ExtraProbability(const CandidateScore& score, const Part& part) {
   if (score.status == CandidateScore::Status::kPruned) return 0.0;
+  const PartSearch& fitted = part.search;
   const bool sheds = ShedsByTilting(score);
   const double expected =
-      sheds ? config.extra_after_shedding
-            : std::clamp(config.extra_per_m * (score.displacement_m - config.extra_quiet_m),
-                         config.extra_min, config.extra_max);
-  const double weight = part.is_hose() && !sheds ? config.extra_prior_samples : 1.0;
+      sheds ? fitted.extra_after_shedding
+            : std::clamp(fitted.extra_per_m * (score.displacement_m - fitted.extra_quiet_m),
+                         fitted.extra_min, fitted.extra_max);
+  const double weight = part.is_hose() && !sheds ? fitted.extra_prior_samples : 1.0;
   const double n = static_cast<double>(score.samples.size());
   return (n * score.extra_probability + weight * expected) / (n + weight);
 }
@@ -235,7 +236,7 @@ bool RolloutScheduler::IsRefined(const Scored& scored) const {
 
 // To take its tube alone.
 bool RolloutScheduler::Promises(const CandidateScore& score) const {
-  return ExtraProbability(score, input_.problem.part, config()) <= config().accept_extra;
+  return ExtraProbability(score, input_.problem.part) <= config().accept_extra;
 }
 
 // Whether it would promise if it took its tube alone in all samples to come.
@@ -250,7 +251,7 @@ bool RolloutScheduler::MayPromise(const Scored& scored) const {
 double RolloutScheduler::CostOf(const Scored& scored, const CandidateScore& score) const {
   const double share = std::min(score.displacement_m / config().max_displacement_m, 1.0);
   return scored.grasp_cost + config().weight_trajectory * share + scored.target->cost +
-         config().weight_extra * ExtraProbability(score, input_.problem.part, config());
+         config().weight_extra * ExtraProbability(score, input_.problem.part);
 }
 
 // The displacement with which the first roll-out of a motion makes it dearer than a rival.

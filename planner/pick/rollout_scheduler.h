@@ -33,8 +33,8 @@ struct Scored {
 
 /// Probability that another tube comes along: the samples' share drawn towards what the predicted
 /// displacement says (after a motion that sheds by tilting: towards a constant), which counts as
-/// some samples (SearchConfig). A motion that touches nothing: 0.
-double ExtraProbability(const CandidateScore& score, const Part& part, const SearchConfig& config);
+/// some samples (the part's own numbers). A motion that touches nothing: 0.
+double ExtraProbability(const CandidateScore& score, const Part& part);
 
 /// What a search needs to know; all must outlive it.
 struct SearchInput {

@@ -36,6 +36,22 @@ TEST_CASE("a number is written shortest and reads back as the same bits") {
   }
 }
 
+TEST_CASE("what is no plain UTF-8 is shown byte by byte") {
+  for (const char* plain : {"", "tube 1.stl", "\"q\" \\ #", "Schl\xc3\xa4uche", "\xe7\xae\xa1",
+                            "\xf0\x9f\x94\xa7", "\xc2\xa0", "\xed\x9f\xbf", "\xf4\x8f\xbf\xbf"}) {
+    CHECK(IsPlainUtf8(plain));
+    CHECK(Printable(plain) == plain);
+  }
+  CHECK(Printable("a\nb\tc\x7f") == "a\\x0Ab\\x09c\\x7F");
+  CHECK(Printable("l\xe4tin") == "l\\xE4tin");
+  CHECK(Printable("\xc3") == "\\xC3");
+  CHECK(Printable("\xc2\x85") == "\\xC2\\x85");           // A control of Latin-1.
+  CHECK(Printable("\xc0\xaf") == "\\xC0\\xAF");           // Overlong.
+  CHECK(Printable("\xed\xa0\x80") == "\\xED\\xA0\\x80");  // Half of a surrogate pair.
+  CHECK(Printable("\xf4\x90\x80\x80x") == "\\xF4\\x90\\x80\\x80x");
+  CHECK_FALSE(IsPlainUtf8("a\nb"));
+}
+
 TEST_CASE("a failed check of the program throws where a false one stands, and only there") {
   CHECK_NOTHROW([] { TT_CHECK(1 + 1 == 2); }());
   CHECK_THROWS_WITH([] { TT_CHECK(1 + 1 == 3); }(),

@@ -250,8 +250,7 @@ class Trial {
       const CandidateScore& score = result.candidates[k];
       Json predicted = ToJson(std::optional(Prediction{
           score.displacement_m, score.extra_probability, static_cast<int>(score.samples.size())}));
-      predicted["probability"] =
-          ExtraProbability(score, part_, config_);  // What the choice goes by.
+      predicted["probability"] = ExtraProbability(score, part_);  // What the choice goes by.
       rows.push_back(
           Row("lift", *tubes[k], request.candidates[k], request.grasp_at_m[k], predicted));
     }

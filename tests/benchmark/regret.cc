@@ -275,7 +275,7 @@ class Trial {
     Offer choice{chosen.motion, chosen.grasp.at_m, 0.0};
     for (const CandidateScore& score : plan.evaluation.candidates) {
       const double own_m = score.displacement_m +
-                           kExtraCost_m * ExtraProbability(score, pile_.part, planner_) +
+                           kExtraCost_m * ExtraProbability(score, pile_.part) +
                            (score.status == CandidateScore::Status::kJammed ? kJamCost_m : 0.0);
       if (score.tube == chosen.target && score.motion == chosen.motion.name) {
         choice.own_m = own_m;

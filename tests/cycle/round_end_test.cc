@@ -138,7 +138,7 @@ TEST_CASE("Every scan is taken from the place that was chosen for it", "[unit]")
   FakeRound round(world);
   round.setup.scan.overhead_m = 0.0;
   const std::vector<RigidTransform> wanted_BS =
-      ScanPoses(round.setup.scan, world.model, world.cell.bin);
+      ScanPoses(round.setup.scan, world.model, world.cell.bin, world.part.radius_m);
   int astray = 0;
   const auto look = world.scanner.look;
   world.scanner.look = [&] {

@@ -152,5 +152,23 @@ TEST_CASE("Samples are spread evenly and normals are smooth around, sharp at cut
   CHECK(ends == Approx(10'000 * 0.01 / 0.41).epsilon(0.05));  // r / (r + L) of the area.
 }
 
+TEST_CASE("A closed mesh has a volume, a bore is none of it, an open one has none", "[unit]") {
+  const Polyline line = {Vector3(1, 2, 3), Vector3(1.4, 2, 3)};
+  TubeMeshOptions options;
+  options.sides = 64;
+  const double polygon = 32.0 * std::sin(2.0 * kPi / 64.0);  // Over r^2.
+  const auto volume = [&] {
+    return EnclosedVolume(ConnectedPieces(MakeTubeMesh(line, 0.01, options)).front());
+  };
+  REQUIRE(volume());
+  CHECK(*volume() == Approx(polygon * 1e-4 * 0.4));
+  options.bore_m = 0.008;
+  REQUIRE(volume());
+  CHECK(*volume() == Approx(polygon * (1e-4 - 0.64e-4) * 0.4));
+  options.ends = TubeMeshOptions::Ends::kOpen;
+  CHECK_FALSE(volume());
+  CHECK_FALSE(EnclosedVolume(Mesh{}));
+}
+
 }  // namespace
 }  // namespace tubetwin

@@ -21,6 +21,20 @@ void CheckCases(BinCase::Kind kind, std::uint64_t count) {
 
 TEST_CASE("An empty bin is called empty", "[unit]") { CheckCases(BinCase::Kind::kEmpty, 40); }
 
+TEST_CASE("An empty bin is called empty however thin its tubes are", "[unit]") {
+  for (const double radius_m : {0.004, 0.006, 0.008}) {
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      BinCase c = DrawBinCase(BinCase::Kind::kEmpty, seed);
+      if (seed == 0) c.bin = Bin();
+      c.part.radius_m = radius_m;
+      const TubeScene scene =
+          Perceive(ScanBinCase(c, kWidth, {2}), c.part, c.bin, PerceptionConfig{}, {2});
+      INFO("seed " << seed << ", radius " << radius_m);
+      CHECK(JudgeBinCase(c, scene) == "");
+    }
+  }
+}
+
 TEST_CASE("A bin with one tube, wherever it lies or leans, is not called empty", "[unit]") {
   CheckCases(BinCase::Kind::kTube, 60);
 }

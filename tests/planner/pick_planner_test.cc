@@ -247,15 +247,34 @@ TEST_CASE("What a motion displaces foretells company, unless it tips the tube", 
   CandidateScore score;
   score.displacement_m = 0.3;
   score.samples.assign(5, score.displacement_m);
-  CHECK(ExtraProbability(score, hose, SearchConfig{}) == Approx(0.5 * 2.2 * 0.25));
+  CHECK(ExtraProbability(score, hose) == Approx(0.5 * 2.2 * 0.25));
   score.rotations_N = {Eigen::Quaterniond::Identity(),
                        Eigen::Quaterniond(Eigen::AngleAxisd(Radians(90.0), Vector3::UnitZ())),
                        Eigen::Quaterniond(Eigen::AngleAxisd(Radians(20.0), Vector3::UnitX()))};
-  CHECK(ExtraProbability(score, hose, SearchConfig{}) == Approx(0.5 * 2.2 * 0.25));
+  CHECK(ExtraProbability(score, hose) == Approx(0.5 * 2.2 * 0.25));
   score.rotations_N.emplace_back(Eigen::AngleAxisd(Radians(-75.0), Vector3::UnitX()));
-  CHECK(ExtraProbability(score, hose, SearchConfig{}) == Approx(0.15 / 6));
+  CHECK(ExtraProbability(score, hose) == Approx(0.15 / 6));
   score.extra_probability = 1.0;
-  CHECK(ExtraProbability(score, hose, SearchConfig{}) == Approx((5 + 0.15) / 6));
+  CHECK(ExtraProbability(score, hose) == Approx((5 + 0.15) / 6));
+}
+
+TEST_CASE("What company a displacement foretells is the part's own", "[unit]") {
+  Part part = LoadPart("hose_b");
+  part.search = {"mine", 1.0, 0.1, 0.05, 0.6, 3.0, 0.4};
+  CandidateScore score;
+  score.samples.assign(3, 0.0);
+  const auto at = [&](double displacement_m) {
+    score.displacement_m = displacement_m;
+    return ExtraProbability(score, part);
+  };
+  CHECK(at(0.0) == Approx(0.5 * 0.05));
+  CHECK(at(0.4) == Approx(0.5 * 0.3));
+  CHECK(at(2.0) == Approx(0.5 * 0.6));
+  part.kind = "rigid";  // Simulated exactly: the line counts as one sample.
+  CHECK(at(2.0) == Approx(0.25 * 0.6));
+  score.rotations_N = {Eigen::Quaterniond::Identity(),
+                       Eigen::Quaterniond(Eigen::AngleAxisd(Radians(75.0), Vector3::UnitX()))};
+  CHECK(at(2.0) == Approx(0.25 * 0.4));
 }
 
 TEST_CASE("Little covered tubes are simulated first, the others only if need be", "[unit]") {

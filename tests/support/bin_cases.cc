@@ -216,7 +216,7 @@ std::vector<OrganizedCloud> ScanBinCase(const BinCase& c, int width, Parallelism
   settings.noise_scale = c.noise_scale;
   const ScanGeometry geometry = GeometryOf(c);
   std::vector<OrganizedCloud> out;
-  for (const RigidTransform& X_BS : ScanPosesOf(PaperCell(), c.bin)) {
+  for (const RigidTransform& X_BS : ScanPosesOf(PaperCell(), c.bin, c.part.radius_m)) {
     out.push_back(CastScan(geometry, X_BS * c.X_SbelievedS, settings,
                            RandomStream(c.seed, out.size(), "bin case scan"), parallelism));
     out.back().X_NS = c.bin.X_BN.inverse() * X_BS;

@@ -97,6 +97,7 @@ Mesh MakeTubeMesh(const Polyline& line, double radius_m, const TubeMeshOptions& 
   Mesh mesh;
   std::vector<Ring> rings = RingsOf(line);
   std::vector<double> radii(rings.size(), radius_m);
+  if (!options.radii_m.empty()) radii = options.radii_m;
   if (options.end_radius_m > 0.0) {
     const std::vector<double> s = ArcLengths(line);
     for (std::size_t i = 0; i < radii.size(); ++i) {

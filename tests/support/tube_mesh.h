@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "models/base/polyline.h"
 #include "models/mesh/mesh.h"
@@ -10,8 +11,9 @@ namespace tubetwin {
 struct TubeMeshOptions {
   enum class Ends { kOpen, kFlat, kRound } ends = Ends::kFlat;
   int sides = 32;
-  double bore_m = 0.0;        ///< Radius of an inner wall; 0: none. Flat ends then are rings.
-  double end_radius_m = 0.0;  ///< A cone: the radius grows to this at the last node; 0: it stays.
+  double bore_m = 0.0;          ///< Radius of an inner wall; 0: none. Flat ends then are rings.
+  double end_radius_m = 0.0;    ///< A cone: the radius grows to this at the last node; 0: it stays.
+  std::vector<double> radii_m;  ///< One per node of the line, in place of the radius; empty: none.
 };
 
 /// The mesh of a tube about a line: one ring of vertices per node, in the plane that halves the

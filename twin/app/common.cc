@@ -39,13 +39,17 @@ void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc
 }
 
 void RequireSoundCell(const Scenario& scenario, const std::string& folder, const Common& common) {
-  const std::vector<Finding> findings = CheckScenario(scenario, folder);
-  for (const Finding& finding : findings) {
-    if (finding.verdict != Finding::Verdict::kDoubtful) continue;
-    Say(common, "doubtful: " + finding.what + ": " + finding.found + "; " + finding.allowed + "; " +
-                    finding.remedy);
+  const std::vector<Finding> cell = CheckScenario(scenario, folder);
+  const std::vector<Finding> part = CheckScenarioPart(scenario, folder);
+  for (const auto* findings : {&cell, &part}) {
+    for (const Finding& finding : *findings) {
+      if (finding.verdict != Finding::Verdict::kDoubtful) continue;
+      Say(common, "doubtful: " + finding.what + ": " + finding.found + "; " + finding.allowed +
+                      "; " + finding.remedy);
+    }
   }
-  RequirePossible(findings);
+  RequirePossible(cell);
+  RequirePossible(part, "the part", ErrorKind::kBadData);
 }
 
 Scenario LoadScenario(const std::vector<std::string>& files, const Common& common,

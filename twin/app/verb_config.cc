@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "models/base/error.h"
 #include "models/base/json.h"
 #include "twin/app/common.h"
 #include "twin/round/scenario_check.h"
@@ -13,13 +14,18 @@ namespace {
 /// The table of what was judged on stdout; what is wrong ends with its exit code.
 int CheckConfig(const std::vector<std::string>& files, const Common& common) {
   const Scenario scenario = LoadScenario(files, common);
-  const std::vector<Finding> findings = CheckScenario(scenario, FolderOf(files.front()));
+  const std::string folder = FolderOf(files.front());
+  const std::vector<Finding> cell = CheckScenario(scenario, folder);
+  const std::vector<Finding> part = CheckScenarioPart(scenario, folder);
+  std::vector<Finding> findings = cell;
+  findings.insert(findings.end(), part.begin(), part.end());
   if (common.json) {
     std::printf("%s\n", FindingsJson(findings).dump(2).c_str());
   } else if (!common.quiet) {
     std::printf("%s", FindingsTable(findings).c_str());
   }
-  RequirePossible(findings);
+  RequirePossible(cell);
+  RequirePossible(part, "the part", ErrorKind::kBadData);
   Say(common,
       WorstOf(findings) == Finding::Verdict::kOk ? "no problem found" : "possible, with doubts");
   return 0;

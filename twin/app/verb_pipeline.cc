@@ -78,7 +78,8 @@ int ScanPile(const ScanOptions& scan, const Common& common) {
   ScanSettings settings = ScenarioScan(scenario, model, physics);
   settings.labels = scan.labels;
   const ScanGeometry geometry = GeometryOf(pile);
-  const std::vector<RigidTransform> poses_BS = ScanPoses(scenario.scan, model, pile.bin);
+  const std::vector<RigidTransform> poses_BS =
+      ScanPoses(scenario.scan, model, pile.bin, pile.part.radius_m);
   MakeFolder(common.out);
   for (const std::size_t i : ChosenViews(scan.view, poses_BS.size())) {
     const RigidTransform X_BS_true = poses_BS[i] * physics.X_SbelievedS;

@@ -55,11 +55,12 @@ Seen PerceiveScene(const CloudInput& input, const Scenario& scenario, const Comm
 }
 
 /// Where the arm stands when the cycle plans: at the last view, the fingers open.
-PathStart AfterLooking(const MotionPlanner& planner, const Scenario& scenario, const Bin& bin) {
+PathStart AfterLooking(const MotionPlanner& planner, const Scenario& scenario, const Bin& bin,
+                       double radius_m) {
   PathStart start;
   start.opening_m = planner.model().gripper.stroke_m;
   const RigidTransform X_BE =
-      planner.PoseOfEForScan(ScanPoses(scenario.scan, planner.model(), bin).back());
+      planner.PoseOfEForScan(ScanPoses(scenario.scan, planner.model(), bin, radius_m).back());
   if (const auto q = planner.Reach(X_BE)) start.q = *q;
   return start;
 }
@@ -99,7 +100,7 @@ int Plan(const CloudInput& input, const Common& common) {
       PlanPicks(problem, MakeEvaluator({common.parallelism(), scenario.evaluator, gripper}),
                 feasible, static_cast<std::uint64_t>(scenario.seed));
   const auto chosen = FirstRunnable(problem, result.plans, planner, scenario.cycle,
-                                    AfterLooking(planner, scenario, seen.bin), result.rejections);
+                                    AfterLooking(planner, scenario, seen.bin, seen.part.radius_m), result.rejections);
   NudgeResult nudge;
   if (!chosen && scenario.planner.nudges > 0) {
     nudge = PlanNudge(problem, feasible,

@@ -17,6 +17,26 @@ std::string Padded(std::string text, std::size_t width) {
   return text;
 }
 
+/// What the scenario asks to be picked, and from where.
+struct Asked {
+  Part part;
+  Bin bin;
+  int count = 0;  ///< 0: not known.
+
+  Asked(const Scenario& scenario, const std::string& folder) {
+    if (!scenario.pile.file.empty()) {
+      const Pile pile = AskedPile(scenario, folder);
+      part = pile.part;
+      bin = pile.bin;
+      count = static_cast<int>(pile.tubes.size());
+      return;
+    }
+    part = LoadPart(ScenarioPartName(scenario));
+    bin = ScenarioBin(scenario, std::nullopt, folder);
+    if (scenario.cell.HasTwin()) count = scenario.pile.count;
+  }
+};
+
 std::string Said(const Finding& finding) {
   return finding.what + ": " + finding.found +
          (finding.allowed.empty() ? "" : "; allowed: " + finding.allowed);
@@ -24,24 +44,27 @@ std::string Said(const Finding& finding) {
 
 }  // namespace
 
+PartFitCell PartFitOf(const Scenario& scenario, const CellModel& model) {
+  PartFitCell cell(model);
+  cell.grip_force_N = scenario.cycle.grip_force_N;
+  cell.carry_acceleration_m_s2 = scenario.cycle.transfer_acceleration_m_s2;
+  cell.pad_friction = scenario.physics.pad_friction[0];
+  cell.noise_N = scenario.physics.wrench_noise_counts * cell.count_N;
+  cell.drift_N = scenario.physics.wrench_bias_walk_N;
+  cell.scan_width = SizeOfScan(model.scanner, scenario.scan.resolution).width;
+  return cell;
+}
+
 std::vector<Finding> CheckScenario(const Scenario& scenario, const std::string& folder) {
   const CellModel model = ScenarioModel(scenario);
-  const bool from_file = !scenario.pile.file.empty();
-  Part part;
-  Bin bin;
-  int count = 0;
-  if (from_file) {
-    const Pile pile = AskedPile(scenario, folder);
-    part = pile.part;
-    bin = pile.bin;
-    count = static_cast<int>(pile.tubes.size());
-  } else {
-    part = LoadPart(ScenarioPartName(scenario));
-    bin = ScenarioBin(scenario, std::nullopt, folder);
-    if (scenario.cell.HasTwin()) count = scenario.pile.count;
-  }
-  return CheckCell({model, bin, part, ScanPoses(scenario.scan, model, bin), count,
+  const Asked asked(scenario, folder);
+  return CheckCell({model, asked.bin, asked.part,
+                    ScanPoses(scenario.scan, model, asked.bin, asked.part.radius_m), asked.count,
                     scenario.nominal_scanner_pose && !scenario.cell.IsTwin()});
+}
+
+std::vector<Finding> CheckScenarioPart(const Scenario& scenario, const std::string& folder) {
+  return JudgePart(Asked(scenario, folder).part, PartFitOf(scenario, ScenarioModel(scenario)));
 }
 
 std::string FindingsTable(const std::vector<Finding>& findings) {
@@ -73,7 +96,8 @@ Json FindingsJson(const std::vector<Finding>& findings) {
   return out;
 }
 
-void RequirePossible(const std::vector<Finding>& findings) {
+void RequirePossible(const std::vector<Finding>& findings, const std::string& who,
+                     ErrorKind kind) {
   const Finding* first = nullptr;
   int more = -1;
   for (const Finding& finding : findings) {
@@ -82,8 +106,8 @@ void RequirePossible(const std::vector<Finding>& findings) {
     ++more;
   }
   if (first == nullptr) return;
-  throw Error(ErrorKind::kConfig,
-              "the cell cannot work: " + Said(*first) + "\n" + first->remedy +
+  throw Error(kind,
+              who + " cannot work: " + Said(*first) + "\n" + first->remedy +
                   (more > 0 ? "\n" + std::to_string(more) + " more impossible" : "") +
                   "\nconfig check shows all that was judged");
 }
