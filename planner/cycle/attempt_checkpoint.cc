@@ -86,6 +86,7 @@ Json ToJson(const AttemptCheckpoint& state) {
               {"detection", DetectionJson(*report.detection)},
               {"sim_s", Json::array({report.sim_s.scan, report.sim_s.move, report.sim_s.weigh,
                                      report.sim_s.settle})},
+              {"phases_s", ToJson(report.phases_s)},
               {"line_E_m", ToJson(state.line_E)},
               {"reference_K", Json{{"force_N", ToJson(state.reference_K.force_N)},
                                    {"torque_Nm", ToJson(state.reference_K.torque_Nm)}}},
@@ -111,6 +112,7 @@ AttemptCheckpoint AttemptCheckpointFromJson(const JsonView& view) {
   const JsonView sim_s = view.Field("sim_s");
   report.sim_s = {sim_s.Item(0).AsNumber(), sim_s.Item(1).AsNumber(), sim_s.Item(2).AsNumber(),
                   sim_s.Item(3).AsNumber()};
+  if (const auto phases_s = view.Optional("phases_s")) report.phases_s = PhasesFromJson(*phases_s);
   state.line_E = view.Field("line_E_m").AsPolyline();
   const JsonView reference = view.Field("reference_K");
   state.reference_K = {reference.Field("force_N").AsVector3(),

@@ -40,6 +40,40 @@ const char* ToString(RoundEnd end) {
   return "fault";
 }
 
+const std::array<NamedPhase, 9>& AttemptPhases() {
+  using Phases = AttemptReport::Phases;
+  static constexpr std::array<NamedPhase, 9> kPhases = {{{"look", &Phases::look},
+                                                         {"reach", &Phases::reach},
+                                                         {"close", &Phases::close},
+                                                         {"lift", &Phases::lift},
+                                                         {"weigh", &Phases::weigh},
+                                                         {"carry", &Phases::carry},
+                                                         {"place", &Phases::place},
+                                                         {"return", &Phases::back},
+                                                         {"recover", &Phases::recover}}};
+  return kPhases;
+}
+
+double AttemptReport::Phases::total() const {
+  double sum = 0.0;
+  for (const NamedPhase& named : AttemptPhases()) sum += this->*named.phase;
+  return sum;
+}
+
+Json ToJson(const AttemptReport::Phases& phases_s) {
+  Json out;
+  for (const NamedPhase& named : AttemptPhases()) out[named.name] = phases_s.*named.phase;
+  return out;
+}
+
+AttemptReport::Phases PhasesFromJson(const JsonView& view) {
+  AttemptReport::Phases phases_s;
+  for (const NamedPhase& named : AttemptPhases()) {
+    phases_s.*named.phase = view.Field(named.name).AsNumber();
+  }
+  return phases_s;
+}
+
 Json ToJson(const NudgeReport& nudge) {
   return Json{{"tube", nudge.tube},         {"direction", ToJson(nudge.direction_N)},
               {"travel_m", nudge.travel_m}, {"contact", nudge.contact},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,10 +47,36 @@ struct AttemptReport {
     double scan = 0, move = 0, weigh = 0, settle = 0;
     double total() const { return scan + move + weigh + settle; }
   } sim_s;  ///< Simulated seconds.
+  /// The same time by what it was for, in the order of a pick. Every moment from the attempt's
+  /// begin to its end belongs to exactly one phase, so that total() is how long it took.
+  struct Phases {
+    double look = 0;     ///< Scans, and from view to view.
+    double reach = 0;    ///< To over the grasp and down to it.
+    double close = 0;    ///< The fingers.
+    double lift = 0;     ///< The extraction motion.
+    double weigh = 0;    ///< Every wait for the load, tare included.
+    double carry = 0;    ///< To over the slot of the tray.
+    double place = 0;    ///< Down onto the tray and letting go.
+    double back = 0;     ///< Up from the tray; and to the first view, which the next attempt tells.
+    double recover = 0;  ///< Nudging, separating in the air, putting back.
+    double total() const;
+  } phases_s;  ///< Simulated seconds.
   struct ComputeTime {
     double modelling = 0, planning = 0, evaluator = 0, total = 0;
   } compute_s;  ///< Wall seconds; never in picks.jsonl.
 };
+
+/// A phase and what files call it.
+struct NamedPhase {
+  const char* name;
+  double AttemptReport::Phases::*phase;
+};
+/// All phases in the order of a pick.
+const std::array<NamedPhase, 9>& AttemptPhases();
+/// {look, reach, close, lift, weigh, carry, place, return, recover}, as in picks.jsonl. Reading
+/// throws Error(kBadData).
+Json ToJson(const AttemptReport::Phases& phases_s);
+AttemptReport::Phases PhasesFromJson(const JsonView& view);
 
 /// Why a round ended.
 enum class RoundEnd { kEmpty, kNoPlan, kAttemptLimit, kFault, kInterrupted, kStored };
@@ -64,6 +91,8 @@ struct RoundReport {
   std::string reason;
   int placed_believed = 0;
   double unseen_m3 = 0.0;  ///< Of the last look.
+  /// Of what came after the last attempt: the look that found nothing to do. Wall seconds.
+  AttemptReport::ComputeTime compute_s;
 };
 
 }  // namespace tubetwin

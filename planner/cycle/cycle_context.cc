@@ -1,6 +1,7 @@
 #include "planner/cycle/cycle_context.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tubetwin {
 namespace {
@@ -8,6 +9,18 @@ namespace {
 constexpr double kReleaseExtra_m = 0.030;  ///< Opening beyond the tube when letting go.
 
 }  // namespace
+
+CycleContext::Phase CycleContext::Enter(Phase phase) {
+  const TimeNs now = cell.clock.Now();
+  report.phases_s.*phase_ += Seconds(now - phase_began_);
+  phase_began_ = now;
+  return std::exchange(phase_, phase);
+}
+
+void CycleContext::BeginPhases() {
+  phase_ = &AttemptReport::Phases::look;
+  phase_began_ = cell.clock.Now();
+}
 
 void CycleContext::Released() {
   cell.carrying = false;

@@ -55,6 +55,24 @@ struct CycleContext {
     TimeNs began_;
   };
 
+  using Phase = double AttemptReport::Phases::*;
+  /// From now on time counts as `phase` of the attempt. Returns the phase until now.
+  Phase Enter(Phase phase);
+  /// A new attempt begins now, with an empty report, looking.
+  void BeginPhases();
+  /// During its life time counts as `phase`, behind it as before.
+  class During {
+   public:
+    During(CycleContext& context, Phase phase) : context_(context), outer_(context.Enter(phase)) {}
+    ~During() { context_.Enter(outer_); }
+    During(const During&) = delete;
+    During& operator=(const During&) = delete;
+
+   private:
+    CycleContext& context_;
+    Phase outer_;
+  };
+
   /// From now on the fingers hold a part that lies so in frame E, or nothing.
   void Hold(const Polyline& line_E) { held = HeldPartOf(line_E, setup.part); }
   /// What was held was let go: nothing is carried and nothing weighs on the arm.
@@ -67,6 +85,10 @@ struct CycleContext {
   StepOutcome Run(const CheckedPath& path, int stage);
   /// Checks a path and runs it; its time counts as motion.
   StepOutcome CheckAndRun(const PickPath& path);
+
+ private:
+  Phase phase_ = &AttemptReport::Phases::look;
+  TimeNs phase_began_{0};
 };
 
 }  // namespace tubetwin

@@ -76,6 +76,7 @@ NudgeStep TryNudge(CycleContext& c, const PickProblem& problem) {
   c.report.rejections.insert(c.report.rejections.end(), result.rejections.begin(),
                              result.rejections.end());
   if (!result.nudge) return {};
+  const CycleContext::During recovering(c, &AttemptReport::Phases::recover);
   const StepOutcome step = Push(c, *result.nudge);
   return {step, result.nudge->tube};
 }

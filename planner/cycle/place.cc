@@ -73,6 +73,7 @@ std::variant<Placement, StepOutcome> PlanPlace(const CycleContext& c, const Poly
 /// To over the slot with an eye on the gripper, and the last weighing. Whether the tube is still
 /// there.
 HeldStep Carry(CycleContext& c, const Placement& placement) {
+  const CycleContext::During carrying(c, &AttemptReport::Phases::carry);
   c.observer.OnStep("carrying to slot " + std::to_string(placement.pose.slot + 1));
   c.cell.carrying = true;
   const StepOutcome carried = c.Run(placement.path, kCarryStage);
@@ -106,6 +107,7 @@ PlaceStep Place(CycleContext& c, const Polyline& line_E) {
   const HeldStep carried = Carry(c, placement);
   if (!carried.step.ok()) return {carried.step};
   if (carried.held == HeldOutcome::kNone) return {{}, AttemptOutcome::kDropped};
+  const CycleContext::During placing(c, &AttemptReport::Phases::place);
   c.observer.OnStep("laying down");
   if (StepOutcome lowered = c.Run(placement.path, kLowerStage); !lowered.ok()) return {lowered};
   c.cell.carrying = false;
@@ -114,6 +116,7 @@ PlaceStep Place(CycleContext& c, const Polyline& line_E) {
   c.Released();
   c.placed_T.push_back(placement.pose.line_T);
   c.report.slot_centre_T = placement.pose.slot_centre_T;
+  const CycleContext::During going_back(c, &AttemptReport::Phases::back);
   StepOutcome up = c.Run(placement.path, kRetreatStage);
   // Every way to the next place begins by going up: a refusal costs nothing.
   if (!up.ok() && !up.refused()) return {up};

@@ -92,9 +92,13 @@ StepOutcome LetGo(CycleContext& c, double opening_m, double rest_s) {
 
 }  // namespace
 
-StepOutcome OpenAndRetreat(CycleContext& c, double opening_m) { return LetGo(c, opening_m, 0.0); }
+StepOutcome OpenAndRetreat(CycleContext& c, double opening_m) {
+  const CycleContext::During recovering(c, &AttemptReport::Phases::recover);
+  return LetGo(c, opening_m, 0.0);
+}
 
 StepOutcome PutBack(CycleContext& c) {
+  const CycleContext::During recovering(c, &AttemptReport::Phases::recover);
   c.observer.OnStep("putting back");
   const bool over_middle = !IsOverBin(c.cell.bin, c.executor.X_BE());
   StepOutcome lowered = c.CheckAndRun(LoweringPath(c, over_middle));

@@ -45,6 +45,7 @@ HeldStep Resolve(CycleContext& c, const Vector3& load_torque_K) {
     return {StepOutcome::Refused(strategy.name + ": " + refusal->reason)};
   }
   const CheckedPath& path = std::get<CheckedPath>(check);
+  const CycleContext::During recovering(c, &AttemptReport::Phases::recover);
   HeldOutcome held = HeldOutcome::kSeveral;
   for (int stage = 0; stage < path.num_stages() && held == HeldOutcome::kSeveral; ++stage) {
     c.observer.OnStep("several held: " + CaptionOf(path, stage));

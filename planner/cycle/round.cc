@@ -64,6 +64,8 @@ RoundReport Round::End(RoundEnd end, const std::string& reason) const {
   out.reason = reason;
   out.placed_believed = static_cast<int>(c_.placed_T.size());
   out.unseen_m3 = views_.scene().unseen_m3;
+  out.compute_s = c_.report.compute_s;
+  out.compute_s.total = out.compute_s.modelling + out.compute_s.planning + out.compute_s.evaluator;
   return out;
 }
 
@@ -72,6 +74,7 @@ void Round::BeginAttempt() {
   c_.report.attempt = attempt_;
   c_.report.strategy = c_.strategy.name;
   c_.attempt_began = c_.cell.clock.Now();
+  c_.BeginPhases();
   c_.held = {};
 }
 
@@ -80,7 +83,9 @@ void Round::EndAttempt(AttemptOutcome outcome, const std::string& reason) {
   if (!reason.empty()) c_.report.reason = reason;
   auto& compute = c_.report.compute_s;
   compute.total = compute.modelling + compute.planning + compute.evaluator;
+  c_.Enter(&AttemptReport::Phases::look);
   c_.observer.OnAttemptEnd(c_.report);
+  compute = {};  // Told; what is counted from here on belongs to the round's end.
   ++attempts_;
   if (outcome == AttemptOutcome::kPlaced) {
     attempt_ = 1;
@@ -198,6 +203,7 @@ Round::AttemptStep Round::Pick(const Decision& decision) {
 // The tool weighs pointing down, so its own weight is taken off pointing down.
 StepOutcome Round::Tare() {
   const CycleContext::Timed timed(c_, &AttemptReport::SimTime::settle);
+  const CycleContext::During weighing(c_, &AttemptReport::Phases::weigh);
   Wait(c_.cell, kBeforeTare_s);
   const MeanWrench tare = MeasureWrench(c_, c_.setup.cycle.weigh_window_s);
   if (!tare.step.ok()) return tare.step;
@@ -212,6 +218,7 @@ Round::GraspStep Round::GraspTube(const Decision& decision) {
   const CheckedPath& path = *decision.path;
   c_.observer.OnStep("approaching tube " + std::to_string(plan.target) + " (" +
                      ToString(plan.target_class) + "), motion " + plan.motion.name);
+  const CycleContext::During reaching(c_, &AttemptReport::Phases::reach);
   if (StepOutcome step = c_.Run(path, kApproachStage); !step.ok()) return {step, ""};
   if (StepOutcome step = Tare(); !step.ok()) return {step, ""};
   const StepOutcome descent = c_.Run(path, kDescendStage);
@@ -224,6 +231,7 @@ Round::GraspStep Round::GraspTube(const Decision& decision) {
         {},
         "met something " + std::to_string(static_cast<int>(1e3 * short_m)) + " mm above the grasp"};
   }
+  const CycleContext::During closing(c_, &AttemptReport::Phases::close);
   c_.observer.OnStep("closing");
   if (StepOutcome step = c_.Run(path, kCloseStage); !step.ok()) return {step, ""};
   const bool nothing = c_.executor.fingers().opening_m < kNothingOpening_m;
@@ -234,6 +242,7 @@ Round::GraspStep Round::GraspTube(const Decision& decision) {
 Weighing Round::LiftAndWeigh(const Decision& decision) {
   const CheckedPath& path = *decision.path;
   c_.cell.arm.SetPayload(c_.setup.part.mass_kg, c_.cell.model.layout.X_FE.translation());
+  const CycleContext::During lifting(c_, &AttemptReport::Phases::lift);
   c_.observer.OnStep("lifting 3 cm");
   if (StepOutcome step = c_.Run(path, kFirstLiftStage); !step.ok()) return {step, {}};
   Weighing first = Weigh(c_, kFirstSettle_s);
@@ -266,6 +275,7 @@ Round::AttemptStep Round::FinishHeld(const PickPlan& plan, const Polyline& line_
   if (!placed.step.ok() || placed.outcome == AttemptOutcome::kPlaced) {
     return {placed.step, placed.outcome};
   }
+  const CycleContext::During recovering(c_, &AttemptReport::Phases::recover);
   PathBuilder open = c_.Path();
   open.Open("opening", c_.gripper.spec.stroke_m);
   return {c_.CheckAndRun(open.path()), placed.outcome};

@@ -85,6 +85,10 @@ void ViewScheduler::MarkAround(int tube_id) {
 }
 
 StepOutcome ViewScheduler::GoTo(std::size_t view, bool first) {
+  // The way from where the attempt before ended; a second look begins over the bin.
+  using Phases = AttemptReport::Phases;
+  const bool back = first && context_.report.phases_s.look == 0.0;
+  const CycleContext::During going(context_, back ? &Phases::back : &Phases::look);
   const CycleConfig& config = context_.setup.cycle;
   const MotionPlanner& planner = context_.executor.planner();
   // From one view to the next the joints go straight: views lie at one height over all else.

@@ -43,6 +43,7 @@ MeanWrench MeasureWrench(CycleContext& c, double duration_s) {
 
 Weighing Weigh(CycleContext& c, double max_s) {
   const CycleContext::Timed timed(c, &AttemptReport::SimTime::weigh);
+  const CycleContext::During weighing(c, &AttemptReport::Phases::weigh);
   if (StepOutcome steady = WaitForSteadyLoad(c, max_s); !steady.ok()) return {steady, {}};
   const MeanWrench now = MeasureWrench(c, c.setup.cycle.weigh_window_s);
   if (!now.step.ok()) return {now.step, {}};

@@ -31,6 +31,31 @@ TEST_CASE("A missing input ends with 66 and names the file or the nearest part",
   CHECK_FALSE(std::filesystem::exists(folder.path() + "/o"));
 }
 
+TEST_CASE("`help` is help, of the program and of every verb", "[app]") {
+  const TemporaryFolder folder;
+  const Outcome plain = RunProgram(folder, "help");
+  CHECK(plain.code == 0);
+  CHECK(plain.out == RunProgram(folder, "--help").out);
+  const Outcome verb = RunProgram(folder, "help campaign run");
+  CHECK(verb.code == 0);
+  CHECK(verb.out == RunProgram(folder, "campaign run --help").out);
+  CHECK_THAT(verb.out, Catch::Contains("[keep]") && Catch::Contains("[[variant]]") &&
+                           Catch::Contains("share of rounds whose folder is kept"));
+  CheckRefused(folder, "help rnu", 64, "no verb is called 'rnu'; nearest: 'run'");
+}
+
+TEST_CASE("A misspelt verb or option is told with the nearest, on every verb", "[app]") {
+  const TemporaryFolder folder;
+  CheckRefused(folder, "rnu --out o", 64, "no verb is called 'rnu'; nearest: 'run'");
+  CheckRefused(folder, "campaign reprot o", 64,
+               "no verb of `tubetwin campaign` is called 'reprot'; nearest: 'report'");
+  CheckRefused(folder, "run --out o --vidoe", 64,
+               "--vidoe is no option of `tubetwin run`; nearest: --video");
+  CheckRefused(folder, "campaign report o --tilte=T", 64,
+               "--tilte is no option of `tubetwin campaign report`; nearest: --title");
+  CheckRefused(folder, "doctor --jsn", 64, "nearest: --json");
+}
+
 TEST_CASE("A wrong command line ends with 64", "[app]") {
   const TemporaryFolder folder;
   CheckRefused(folder, "fly --out o", 64, "fly");

@@ -111,8 +111,7 @@ const std::vector<ThirdParty>& ThirdParties() {
       {"netdb.h", kSockets, true},
       {"Random123/", {"models/base", "tests"}, true},
       {"boost/", {"models/base", "twin/statistics", "tests"}, true},
-      // Recordings of devices and of pictures.
-      {"zstd.h", {"hw_bridge/recording", "twin/render"}, true},
+      {"zstd.h", {"models/base", "twin/render"}, true},
       {"catch2/", {"tests"}},
       {"benchmark/", {"tests"}},
       {"kdl/", {"tests"}, true},

@@ -24,6 +24,7 @@ def main(folder):
             summary = json.load(f)
         picks = [json.loads(line) for line in open(os.path.join(here, "picks.jsonl"))]
         times = [json.loads(line) for line in open(os.path.join(here, "timings.jsonl"))]
+        times = [t for t in times if t["attempt"] > 0]  # 0: the look after the last attempt.
         manifest = os.path.join(here, "manifest.json")
         wall = json.load(open(manifest))["wall_s"] if os.path.exists(manifest) else float("nan")
         rounds[part].append((os.path.basename(here), summary, picks, times, wall))

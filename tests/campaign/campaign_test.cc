@@ -6,6 +6,7 @@
 #include "models/base/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
+#include "twin/campaign/campaign_keys.h"
 #include "twin/campaign/campaign_round.h"
 
 namespace tubetwin {
@@ -179,6 +180,26 @@ TEST_CASE("the sample is a share of the rounds, the same whoever asks") {
   CHECK_FALSE(IsSampled(campaign, 0));
   campaign.keep.sample = 1.0;
   CHECK(IsSampled(campaign, 0));
+}
+
+TEST_CASE("every key of a campaign file stands in the help and in the schema") {
+  const Json schema = CampaignSchema();
+  for (const char* key : {"seed", "rounds", "keep", "variant"}) {
+    INFO(key);
+    CHECK(schema["properties"].contains(key));
+  }
+  for (const char* key : {"failures", "sample", "films"}) {
+    CHECK(schema["properties"]["keep"]["properties"].contains(key));
+    CHECK_THAT(CampaignKeysText(), Catch::Contains("  " + std::string(key) + " "));
+  }
+  const Json variant = schema["properties"]["variant"]["items"];
+  for (const char* key : {"name", "part", "count", "profile", "set"}) {
+    CHECK_THAT(variant["properties"][key]["description"].get<std::string>(), !Catch::Equals(""));
+    CHECK_THAT(CampaignKeysText(), Catch::Contains("  " + std::string(key) + " "));
+  }
+  CHECK(variant["additionalProperties"] == false);
+  CHECK_THAT(CampaignKeysText(), Catch::Contains("[keep]: ") && Catch::Contains("[[variant]]: ") &&
+                                     Catch::Contains("default 0.01"));
 }
 
 }  // namespace tubetwin

@@ -10,6 +10,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/campaign/campaign_status.h"
+#include "twin/campaign/campaign_summary.h"
 #include "twin/campaign/record_line.h"
 #include "twin/campaign/shard_file.h"
 
@@ -220,6 +221,28 @@ TEST_CASE("status tells rounds, success, rate and shards that fell silent") {
   CHECK(status.lines[0].state == "silent");
   CHECK(status.rounds_per_hour == 0.0);
   CHECK(Refusal([&] { ReadCampaignStatus(folder / "none"); }).kind() == ErrorKind::kMissing);
+}
+
+TEST_CASE("status and progress tell parts per hour, and what the rounds of several variants are") {
+  const TemporaryFolder folder;
+  const Campaign campaign = FakeCampaign(2, 2);
+  const CampaignRun run = RunAll(campaign, folder / "c");
+  const std::string line = ProgressText(run.progress);
+  CHECK_THAT(line,
+             Contains("4/4 rounds (2 of each of 2 variants)") && Contains(" parts/h by variant"));
+  const CampaignStatus status = ReadCampaignStatus(folder / "c");
+  REQUIRE(status.parts_per_hour.size() == 2);
+  const CampaignResult result = ReadShards({folder / "c"});
+  const CampaignManifest manifest = ManifestOf(result);
+  for (std::size_t i = 0; i < 2; ++i) {
+    CHECK(status.parts_per_hour[i].first == campaign.variants[i].name);
+    // What the merged result will say, interval included.
+    CHECK(ToJson(status.parts_per_hour[i].second) == ToJson(manifest.compute_s[i].parts_per_hour));
+  }
+  CHECK_THAT(ToText(status), Contains("4 of 4 rounds done (2 of each of 2 variants)") &&
+                                 Contains("parts per hour, computing included: variant 1"));
+  const CampaignRun alone = RunAll(FakeCampaign(2), folder / "one");
+  CHECK_THAT(ProgressText(alone.progress), Contains("2/2 rounds, ") && Contains(" parts/h, "));
 }
 
 }  // namespace tubetwin

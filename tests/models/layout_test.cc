@@ -153,10 +153,10 @@ TEST_CASE("The fingertips advance while closing as the linkage's table says", "[
 
 TEST_CASE("A grasp keeps the pads 2 mm over the floor", "[unit]") {
   const GripperSpec& spec = PaperCell().gripper;
-  CHECK(GraspHeightOverAxis(0.0125, PaperCell().gripper, PaperCell().gripper) == 0.009);
-  CHECK(GraspHeightOverAxis(0.08, PaperCell().gripper, PaperCell().gripper) == 0.009);
-  CHECK(std::abs(0.010 + GraspHeightOverAxis(0.010, PaperCell().gripper, PaperCell().gripper) -
-                 0.5 * spec.pad_height_m - 0.002) < 1e-12);
+  CHECK(GraspHeightOverAxis(0.0125, PaperCell().gripper) == 0.009);
+  CHECK(GraspHeightOverAxis(0.08, PaperCell().gripper) == 0.009);
+  CHECK(std::abs(0.010 + GraspHeightOverAxis(0.010, PaperCell().gripper) - 0.5 * spec.pad_height_m -
+                 0.002) < 1e-12);
 }
 
 }  // namespace

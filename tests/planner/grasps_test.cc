@@ -79,7 +79,7 @@ TEST_CASE("A lone tube is grasped across its axis, above it, from near end to ne
     CHECK(X_NG.linear().col(2).isApprox(-Vector3::UnitZ()));
     CHECK(X_NG.linear().determinant() == Approx(1.0));
     CHECK(X_NG.translation().z() ==
-          Approx(kRadius + GraspHeightOverAxis(kRadius, PaperCell().gripper, PaperCell().gripper)));
+          Approx(kRadius + GraspHeightOverAxis(kRadius, PaperCell().gripper)));
     CHECK(site.grasp.opening_m == Approx(2 * (kRadius + 0.020)));  // All the room it wants.
     // Of the two equal yaws the one along B's x.
     CHECK((Bin{}.X_BN.linear() * X_NG.linear().col(0)).x() >= 0.0);

@@ -9,9 +9,9 @@
 #include "hw_bridge/mcap/mcap_export.h"
 #include "hw_bridge/recording/byte_stream.h"
 #include "hw_bridge/recording/crc32.h"
-#include "hw_bridge/recording/zstd_frame.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
+#include "models/base/zstd_frame.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

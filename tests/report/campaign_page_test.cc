@@ -42,7 +42,7 @@ TEST_CASE("all numbers of a campaign's page are those of summary.json") {
     CHECK(Json::parse(value_and_text.first) == summary.at(Json::json_pointer(pointer)));
   }
   for (const char* pointer :
-       {"/placed", "/attempts", "/success/k", "/variants/1/success/cluster95/0",
+       {"/variants/1/rounds", "/variants/1/success/cluster95/0",
         "/variants/0/by_tubes_left/2/success/wilson95/1", "/variants/0/by_motion/0/success/n",
         "/variants/1/sim_s/placed_tube/p95"}) {
     INFO(pointer);

@@ -270,8 +270,22 @@ TEST_CASE("intervals are drawn on an axis that begins below all of them") {
   // 200 px for 20 %: the share of 0.9 lies in the middle, 110 px from the top.
   CHECK_THAT(svg, Contains("cy=\"110.0\" r=\"4\""));
   CHECK(IntervalChartSvg({}, "x").empty());
-  CHECK_THAT(BarsSvg({{"a <b>", {3.0}, "3"}}, {"bad-bar"}, "t"), Contains("a &lt;b&gt;"));
-  CHECK(BarsSvg({{"a", {0.0}, "0"}}, {"bad-bar"}, "t").empty());
+}
+
+TEST_CASE("bars carry their whole name, however long") {
+  const std::string name = "a <b> " + std::string(60, 'x');
+  CHECK_THAT(BarsHtml({{name, {3.0}, "3"}}, {"bad-bar"}, "t"),
+             Contains("a &lt;b&gt; " + std::string(60, 'x') + "</div>"));
+  CHECK(BarsHtml({{"a", {0.0}, "0"}}, {"bad-bar"}, "t").empty());
+}
+
+TEST_CASE("a Gantt chart's bars begin where the ones before end") {
+  const std::string html =
+      GanttHtml({{"look", 0.0, 5.0, "part0"}, {"reach", 5.0, 20.0, "part1"}}, "t");
+  CHECK_THAT(html, Contains("class=\"part0\" x=\"0.0\" y=\"0.0\" width=\"250.0\"") &&
+                       Contains("class=\"part1\" x=\"250.0\" y=\"0.0\" width=\"750.0\"") &&
+                       Contains(">15.0 s</div>"));
+  CHECK(GanttHtml({}, "t").empty());
 }
 
 }  // namespace tubetwin

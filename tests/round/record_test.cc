@@ -62,6 +62,16 @@ TEST_CASE("a row of earlier versions, without prediction and nudges, is read", "
   CHECK(attempt.chosen->motion == "tip+");
 }
 
+TEST_CASE("phases of a row come back behind the times, and rows without them have none", "[unit]") {
+  const std::string phases =
+      R"("phases_s":{"look":5.1,"reach":6.2,"close":0.5,"lift":3.25,"weigh":1.7,"carry":4.125,"place":2.0,"return":3.0,"recover":1.125},)";
+  std::string row = kFullRow;
+  row.insert(row.find("\"truth\""), phases);
+  CHECK(ToJson(Read(row), {2, 1}).dump() == row);
+  CHECK(Read(row).phases_s->total() == Approx(27.0));
+  CHECK_FALSE(Read(kFullRow).phases_s);
+}
+
 TEST_CASE("a damaged row is refused with file, line and field", "[unit]") {
   CHECK_THAT(Refusal("\"force_N\":1.1", "\"force_N\":\"1.1\""),
              Contains("picks.jsonl:7: detection.force_N: a number is needed"));

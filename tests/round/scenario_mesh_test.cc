@@ -26,7 +26,7 @@ Scenario Read(const std::string& toml) {
 
 std::string MessageOf(const Scenario& scenario, const std::string& folder, ErrorKind kind) {
   try {
-    ScenarioBin(scenario, {0.77, 0.58, 0.09}, folder);
+    ScenarioBin(scenario, Bin().size_m, folder);
   } catch (const Error& error) {
     CHECK(static_cast<int>(error.kind()) == static_cast<int>(kind));
     return error.what();
@@ -39,7 +39,7 @@ TEST_CASE("A bin's mesh gives the bin its size", "[campaign]") {
   const TemporaryFolder folder;
   Write(folder, "bin.stl", MakeBinMesh({0.4, 0.7, 0.12}, 0.01), 1000.0);
   const Scenario scenario = Read("[bin]\nmesh = \"bin.stl\"\nmesh_units = \"mm\"\n");
-  const Bin bin = ScenarioBin(scenario, {0.77, 0.58, 0.09}, folder.path());
+  const Bin bin = ScenarioBin(scenario, Bin().size_m, folder.path());
   constexpr double kExact_m = 0.0005;
   CHECK(bin.size_m[0] == Approx(0.7).margin(kExact_m));
   CHECK(bin.size_m[1] == Approx(0.4).margin(kExact_m));

@@ -22,6 +22,34 @@ TEST_CASE("The interval of a mean is Student's", "[unit]") {
 
 }  // namespace
 
+TEST_CASE("a ratio of sums is drawn by whole clusters") {
+  const std::vector<RatioPart> alike(5, {2.0, 4.0});
+  const Interval point = RatioBootstrap95(alike, Stream(1), 5);
+  CHECK(point.low == 0.5);
+  CHECK(point.high == 0.5);
+  // Two clusters drawn twice: 0, 1/2 or 1 in a quarter, a half, a quarter of the samples.
+  const std::vector<RatioPart> two = {{0.0, 1.0}, {1.0, 1.0}};
+  const Interval wide = RatioBootstrap95(two, Stream(1), 2);
+  CHECK(wide.low == 0.0);
+  CHECK(wide.high == 1.0);
+  CHECK(RatioBootstrap95(two, Stream(1), 2, 50).low == RatioBootstrap95(two, Stream(1), 2, 50).low);
+  CHECK(std::isnan(RatioBootstrap95({}, Stream(1), 0).low));
+}
+
+TEST_CASE("four times as many clusters halve the interval of a ratio") {
+  std::vector<RatioPart> clusters;
+  RandomStream random = Stream(3);
+  for (int i = 0; i < 200; ++i) clusters.push_back({random.Uniform(0.0, 2.0), 1.0});
+  const auto width = [&](int draws) {
+    const Interval found = RatioBootstrap95(clusters, Stream(4), draws);
+    return found.high - found.low;
+  };
+  constexpr double kOfDrawing = 0.1;  // 2000 samples: quantiles are off by some percent.
+  CHECK(width(200) == Approx(2.0 * width(800)).epsilon(kOfDrawing));
+  // A mean of numbers of standard deviation 1 / sqrt(3).
+  CHECK(width(200) == Approx(2.0 * 1.96 / std::sqrt(3.0 * 200)).epsilon(kOfDrawing));
+}
+
 TEST_CASE("the exact McNemar test agrees with published values and counted coins") {
   // Fay 2011, exact2x2: 9 against 2 discordant pairs, p = 0.06543.
   CHECK(McNemarExact(9, 2) == Approx(0.06543).margin(5e-6));

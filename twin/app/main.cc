@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -7,8 +6,8 @@
 #include <CLI/CLI.hpp>
 
 #include "models/base/error.h"
-#include "models/base/text.h"
 #include "twin/app/common.h"
+#include "twin/app/suggest.h"
 
 namespace tubetwin {
 namespace {
@@ -16,7 +15,7 @@ namespace {
 constexpr const char* kDescription =
     "Example: tubetwin run --seed 1 --video --out out/first\n\n"
     "A digital twin of a robotic cell that empties a bin of entangled tubes, and the picking\n"
-    "pipeline itself. `tubetwin VERB --help` shows a verb with an example.";
+    "pipeline itself. `tubetwin help VERB` shows a verb with an example.";
 
 int Run(int argc, char** argv) {
   CLI::App app(kDescription, "tubetwin");
@@ -38,22 +37,21 @@ int Run(int argc, char** argv) {
   AddPartVerb(app, common);
   AddDoctorVerb(app, common);
   AddConfigVerb(app, common);
-  if (argc > 1 && argv[1][0] != '-') {  // The parser's own words name no verb.
-    std::vector<std::string> verbs;
-    for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
-    if (std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end()) {
-      std::fprintf(stderr, "tubetwin: no verb is called '%s'; nearest: '%s'; there are %s\n",
-                   argv[1], NearestName(argv[1], verbs).c_str(), Join(verbs).c_str());
-      return static_cast<int>(ErrorKind::kUsage);
-    }
-  }
+  std::vector<std::string> words = HelpWords({argv + 1, argv + argc});
+  const auto refuse = [](const std::string& why) {
+    std::fprintf(stderr, "tubetwin: %s\nTry `tubetwin help`, or `tubetwin help VERB`.\n",
+                 why.c_str());
+    return static_cast<int>(ErrorKind::kUsage);
+  };
+  // The parser's own words name neither verbs nor options.
+  if (const std::string why = MisspeltVerb(app, words); !why.empty()) return refuse(why);
   try {
-    app.parse(argc, argv);
+    // It takes the last word first.
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);  // --help, --version
-    std::fprintf(stderr, "tubetwin: %s\nTry `tubetwin --help`, or --help after a verb.\n",
-                 e.what());
-    return static_cast<int>(ErrorKind::kUsage);
+    const std::string why = MisspeltOption(app, words);
+    return refuse(why.empty() ? e.what() : why);
   }
   return common.action();
 }

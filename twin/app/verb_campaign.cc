@@ -10,6 +10,7 @@
 #include "twin/app/campaign_progress.h"
 #include "twin/app/common.h"
 #include "twin/campaign/campaign.h"
+#include "twin/campaign/campaign_keys.h"
 #include "twin/campaign/campaign_round.h"
 #include "twin/campaign/campaign_status.h"
 #include "twin/campaign/campaign_summary.h"
@@ -27,6 +28,7 @@ struct CampaignOptions {
   int jobs = 0;
   double grace_s = 20.0;
   std::vector<std::string> folders, kept;
+  ReportHead head;
 };
 
 /// "90", "90s", "30m", "8h" in seconds.
@@ -89,9 +91,10 @@ int ReportVerb(const CampaignOptions& given, const Common& common) {
   // A folder of one round has no campaign.json, but a summary.
   const bool is_round =
       !fs::exists(folder / "campaign.json") && fs::exists(folder / "summary.json");
-  const std::size_t bytes = is_round
-                                ? WriteRoundReport(folder.string(), file, /*computing_times=*/true)
-                                : WriteCampaignReport(folder.string(), given.kept, file);
+  const std::size_t bytes =
+      is_round ? WriteRoundReport(folder.string(), file,
+                                  /*computing_times=*/true, given.head)
+               : WriteCampaignReport(folder.string(), given.kept, file, given.head);
   if (common.json) {
     std::printf("%s\n", Json{{"file", file}, {"bytes", bytes}}.dump(2).c_str());
   } else {
@@ -126,6 +129,8 @@ void AddRun(CLI::App& campaign, Common& common) {
       "hand; the same command goes on where it was. --set, --seed and --shard/--shards as said "
       "below; --threads is per round (default 1). A shard of several is merged with `campaign "
       "merge`; the whole campaign merges itself.");
+  run->footer("Keys of the file (`tubetwin campaign schema` gives them as a JSON Schema):\n" +
+              CampaignKeysText());
   run->add_option("file", given->file, "Campaign file (TOML)")->required()->type_name("C.toml");
   run->add_option("--jobs", given->jobs, "Rounds at a time; default: all cores")
       ->check(CLI::Range(1, 1024))
@@ -152,7 +157,9 @@ void AddRun(CLI::App& campaign, Common& common) {
 void AddStatus(CLI::App& campaign, Common& common) {
   auto seen = std::make_shared<CampaignOptions>();
   CLI::App* status = campaign.add_subcommand(
-      "status", "Example: tubetwin campaign status out/c\n\nRounds done, rate and time left.");
+      "status",
+      "Example: tubetwin campaign status out/c\n\n"
+      "Rounds done, rate and time left, parts per hour of each variant so far.");
   status->add_option("folder", seen->folders, "Folder of the campaign")
       ->required()
       ->expected(1)
@@ -183,10 +190,12 @@ void AddReport(CLI::App& campaign, Common& common) {
   auto page = std::make_shared<CampaignOptions>();
   CLI::App* report = campaign.add_subcommand(
       "report",
-      "Example: tubetwin campaign report out/c\n\n"
+      "Example: tubetwin campaign report out/c --title \"Hoses, cell 3\" --customer \"ACME\"\n\n"
       "Makes one page of a campaign's folder, merged or not, or of a round's result folder: "
       "DIR/report.html, whole in itself. Unlike the page that `run` writes it tells computing "
-      "times too. Failed attempts that were kept are shown with picture, loads and a 3-D view.");
+      "times too. Its first sheet is for a customer: part, bin, cell, assumptions, parts per hour "
+      "with their interval. Failed attempts that were kept are shown with picture, loads and a 3-D "
+      "view.");
   report->add_option("folder", page->folders, "Folder of the campaign or round")
       ->required()
       ->expected(1)
@@ -195,6 +204,8 @@ void AddReport(CLI::App& campaign, Common& common) {
       ->add_option("--kept", page->kept,
                    "Shards' folders with failures and samples, when DIR was merged from them")
       ->type_name("DIR...");
+  report->add_option("--title", page->head.title, "What stands over the page")->type_name("TEXT");
+  report->add_option("--customer", page->head.customer, "Whom the page is for")->type_name("TEXT");
   AddCommonOptions(*report, common, "The page's file; default DIR/report.html", false);
   report->callback(
       [page, &common] { common.action = [page, &common] { return ReportVerb(*page, common); }; });
@@ -217,6 +228,21 @@ void AddCompare(CLI::App& campaign, Common& common) {
       [pair, &common] { common.action = [pair, &common] { return CompareVerb(*pair, common); }; });
 }
 
+void AddSchema(CLI::App& campaign, Common& common) {
+  CLI::App* schema =
+      campaign.add_subcommand("schema",
+                              "Example: tubetwin campaign schema > campaign.schema.json\n\n"
+                              "JSON Schema of a campaign file; `tubetwin config schema` is that of "
+                              "the scenario keys in set.");
+  AddCommonOptions(*schema, common, "", false);
+  schema->callback([&common] {
+    common.action = [] {
+      std::printf("%s\n", CampaignSchema().dump(2).c_str());
+      return 0;
+    };
+  });
+}
+
 }  // namespace
 
 void AddCampaignVerb(CLI::App& app, Common& common) {
@@ -230,6 +256,7 @@ void AddCampaignVerb(CLI::App& app, Common& common) {
   AddMerge(*campaign, common);
   AddReport(*campaign, common);
   AddCompare(*campaign, common);
+  AddSchema(*campaign, common);
 }
 
 }  // namespace tubetwin

@@ -4,6 +4,8 @@
 
 #include "models/base/error.h"
 #include "models/base/json.h"
+#include "models/base/text.h"
+#include "models/model_file.h"
 #include "twin/app/common.h"
 #include "twin/round/scenario_check.h"
 
@@ -14,7 +16,7 @@ namespace {
 /// The table of what was judged on stdout; what is wrong ends with its exit code.
 int CheckConfig(const std::vector<std::string>& files, const Common& common) {
   const Scenario scenario = LoadScenario(files, common);
-  const std::string folder = FolderOf(files.front());
+  const std::string folder = files.empty() ? "." : FolderOf(files.front());
   const std::vector<Finding> cell = CheckScenario(scenario, folder);
   const std::vector<Finding> part = CheckScenarioPart(scenario, folder);
   std::vector<Finding> findings = cell;
@@ -31,6 +33,25 @@ int CheckConfig(const std::vector<std::string>& files, const Common& common) {
   return 0;
 }
 
+/// A shipped model file on stdout, or the names of all.
+int ShowModel(const std::string& name) {
+  std::vector<std::string> all;
+  for (const char* folder : {"cells", "arms", "grippers", "wrists", "scanners"}) {
+    const std::vector<std::string> names = ModelFileNames(folder);
+    all.insert(all.end(), names.begin(), names.end());
+    if (name.empty()) std::printf("%-9s %s\n", folder, Join(names).c_str());
+    // ur10e is a cell and an arm: "arms/ur10e" says which.
+    for (const std::string& known : names) {
+      if (name != known && name != folder + ("/" + known)) continue;
+      std::printf("%s", OpenModelFile(folder, known, folder).text.c_str());
+      return 0;
+    }
+  }
+  if (name.empty()) return 0;
+  throw Error(ErrorKind::kMissing, "no shipped file is named '" + name + "'; nearest is '" +
+                                       NearestName(name, all) + "'; known: " + Join(all));
+}
+
 }  // namespace
 
 void AddConfigVerb(CLI::App& app, Common& common) {
@@ -40,11 +61,20 @@ void AddConfigVerb(CLI::App& app, Common& common) {
   config->require_subcommand(1);
   auto files = std::make_shared<std::vector<std::string>>();
   CLI::App* check = config->add_subcommand("check", "Example: tubetwin config check my.toml");
-  check->add_option("file", *files, "Scenario and cell files, later ones override")->required();
+  check->add_option("file", *files, "Scenario and cell files, later ones override");
   AddCommonOptions(*check, common, "", false);
   check->callback([files, &common] {
     common.action = [files, &common] { return CheckConfig(*files, common); };
   });
+  auto model = std::make_shared<std::string>();
+  CLI::App* shown = config->add_subcommand(
+      "model",
+      "Example: tubetwin config model leao2020 > my_cell.toml\n\nPrints a shipped cell, arm, "
+      "gripper, "
+      "wrist or scanner file, to start from; without a name: which there are.");
+  shown->add_option("name", *model, "Name of a shipped file");
+  AddCommonOptions(*shown, common, "", false);
+  shown->callback([model, &common] { common.action = [model] { return ShowModel(*model); }; });
   auto dumped = std::make_shared<std::vector<std::string>>();
   CLI::App* dump = config->add_subcommand("dump",
                                           "Example: tubetwin config dump my.toml\n\nEvery key "

@@ -41,8 +41,9 @@ int CheckPart(const std::string& file, const Common& common) {
   const std::vector<Finding> findings = Judged(part, common);
   const Finding::Verdict worst = WorstOf(findings);
   if (common.json) {
-    PrintJson(
-        {{"part", PartToJson(part)}, {"verdict", ToString(worst)}, {"findings", FindingsJson(findings)}});
+    PrintJson({{"part", PartToJson(part)},
+               {"verdict", ToString(worst)},
+               {"findings", FindingsJson(findings)}});
   } else {
     std::printf("%s: %s, radius %s m, length %s m, %s kg\n", part.name.c_str(), part.kind.c_str(),
                 Number(part.radius_m).c_str(), Number(part.length_m).c_str(),
@@ -115,7 +116,7 @@ int Import(const PartImport& given, const Common& common) {
     out["part"] = fields;
     out["mass_source"] = imported.mass_source;
     out["stiffness_source"] = imported.stiffness_source;
-    out["findings"] = ToJson(findings);
+    out["findings"] = FindingsJson(findings);
     out["picture"] = picture;
     PrintJson(out);
     return 0;

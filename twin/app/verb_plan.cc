@@ -100,7 +100,8 @@ int Plan(const CloudInput& input, const Common& common) {
       PlanPicks(problem, MakeEvaluator({common.parallelism(), scenario.evaluator, gripper}),
                 feasible, static_cast<std::uint64_t>(scenario.seed));
   const auto chosen = FirstRunnable(problem, result.plans, planner, scenario.cycle,
-                                    AfterLooking(planner, scenario, seen.bin, seen.part.radius_m), result.rejections);
+                                    AfterLooking(planner, scenario, seen.bin, seen.part.radius_m),
+                                    result.rejections);
   NudgeResult nudge;
   if (!chosen && scenario.planner.nudges > 0) {
     nudge = PlanNudge(problem, feasible,

@@ -1,13 +1,16 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 
 #include <CLI/CLI.hpp>
 
+#include "models/base/cloud/cloud.h"
 #include "models/base/error.h"
 #include "models/base/json.h"
 #include "twin/app/common.h"
 #include "twin/render/perceived_picture.h"
+#include "twin/render/picture_points.h"
 #include "twin/render/pile_picture.h"
 #include "twin/render/recording.h"
 
@@ -59,6 +62,29 @@ void RenderTubes(const RenderOptions& given, const Json& json, const std::string
   RenderPerceivedPicture(picture, out);
 }
 
+/// What one scan shows of the bin.
+void RenderCloud(const RenderOptions& given, const std::string& out) {
+  const OrganizedCloud cloud = ReadCloud(given.file);
+  if (cloud.X_NS.matrix() == RigidTransform::Identity().matrix()) {
+    throw Error(ErrorKind::kBadData,
+                given.file + ": says no pose of the scanner, so the bin cannot be drawn around it");
+  }
+  PerceivedPicture picture;
+  if (!given.bin.empty()) picture.bin.size_m = ParseBinSize(given.bin);
+  const auto valid = std::count_if(cloud.p_SP.begin(), cloud.p_SP.end(),
+                                   [](const Eigen::Vector3f& p) { return IsValid(p); });
+  picture.cloud_N = DownsampleForPicture({cloud}, picture.bin);
+  picture.caption = std::to_string(cloud.width) + " x " + std::to_string(cloud.height) +
+                    " points of a scan, " + std::to_string(valid) + " valid";
+  RenderPerceivedPicture(picture, out);
+}
+
+/// Whether a file is a cloud by its ending, packed or not.
+bool IsCloud(std::filesystem::path file) {
+  if (file.extension() == ".zst") file.replace_extension();
+  return file.extension() == ".pcd" || file.extension() == ".ply";
+}
+
 /// Whether a JSON file is a tubes.json; other files are not read.
 std::optional<Json> TubesJson(const std::string& file) {
   if (std::filesystem::path(file).extension() != ".json") return std::nullopt;
@@ -92,6 +118,14 @@ int Render(const RenderOptions& given, const Common& common) {
     RenderPilePicture(LoadPile(given.file, overrides), common.out);
     return 0;
   }
+  if (IsCloud(given.file)) {
+    if (ending != ".png") {
+      throw Error(ErrorKind::kUsage,
+                  given.file + ": a cloud gives a picture; a film needs a recording");
+    }
+    RenderCloud(given, common.out);
+    return 0;
+  }
   const Recording recording = ReadRecording(given.file);
   if (ending == ".mp4") {
     RenderFilm(recording, common.out, given.speed, common.parallelism());
@@ -113,9 +147,10 @@ void AddRenderVerb(CLI::App& app, Common& common) {
   CLI::App* verb = app.add_subcommand(
       "render",
       "Example: tubetwin render out/first/recording.bin --out film.mp4\n\n"
-      "Pictures and films of recordings, pictures of piles and of what was perceived; no display "
-      "is needed.");
-  verb->add_option("file", given->file, "recording.bin of a result folder, a pile, or tubes.json")
+      "Pictures and films of recordings, pictures of piles, of what was perceived and of scans (a "
+      "kept failure's view_N.pcd.zst); no display is needed.");
+  verb->add_option("file", given->file,
+                   "recording.bin of a result folder, a pile, tubes.json, or a cloud")
       ->required();
   verb->add_option("--frame", given->frame, "Frame of the recording, for a picture")
       ->check(CLI::NonNegativeNumber);

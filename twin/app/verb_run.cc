@@ -11,7 +11,7 @@
 #include "models/base/json.h"
 #include "models/base/text.h"
 #include "twin/app/common.h"
-#include "twin/live/dry_run.h"
+#include "twin/app/dry_run_verb.h"
 #include "twin/live/live_cell.h"
 #include "twin/report/write_report.h"
 #include "twin/round/result_files.h"
@@ -88,7 +88,9 @@ Acknowledgement AskOperator(const std::string& what) {
 }
 
 /// The round on whatever cell the scenario chooses.
-RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOptions& options) {
+/// A rehearsal tells its story, too.
+RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOptions& options,
+                        std::string& story) {
   if (scenario.cell.IsTwin() && !run.dry) return RunRound(scenario, options);
   scenario.cell.ValidateOrThrow();
   options.acknowledge = AskOperator;
@@ -120,13 +122,9 @@ RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOp
     WriteJsonFile(live.Links(), (fs::path(options.out_folder) / "links.json").string());
     return result;
   }
-  DryRunCell dry(live.cell());
-  int attempts = 0;  // The stop is asked for before each: one is enough to see what would be done.
-  const auto stop_requested = options.stop_requested;
-  options.stop_requested = [&attempts, stop_requested] {
-    return attempts++ > 0 || stop_requested();
-  };
-  return RunCellRound(dry.cell(), scenario, options);
+  DryRun dry = RunDry(live.cell(), scenario, options);
+  story = "dry run: " + DryRunText(dry.story) + "; " + dry.story.told;
+  return std::move(dry.round);
 }
 
 Scenario RunScenario(const RunOptions& run, const Common& common, std::string& folder) {
@@ -163,12 +161,15 @@ int Run(const RunOptions& run, const Common& common) {
   ProgressLine progress(!common.quiet);
   options.progress = [&](const std::string& text) { progress.Show(text); };
   options.stop_requested = StopOnSignals();
-  const RoundResult result = RunAnywhere(run, scenario, options);
+  std::string story;
+  const RoundResult result = RunAnywhere(run, scenario, options, story);
 
   const RoundSummary& summary = result.record.summary;
   const Json told = RoundSummaryJson(result.record);
   if (common.json) {
     std::printf("%s\n", told.dump(2).c_str());
+  } else if (!story.empty()) {
+    std::printf("%s\n", story.c_str());
   } else {
     std::printf("placed %d of %d in %d attempts, first attempt %d of %d, end: %s (%s)\n",
                 summary.placed, summary.tubes_start, summary.attempts, summary.first_attempt.k,
@@ -214,7 +215,8 @@ void AddRunVerb(CLI::App& app, Common& common) {
                    "Exit with 1 unless 'KEY>=VALUE' of summary.json holds")
       ->allow_extra_args(false);
   verb->add_flag("--dry-run", run->dry,
-                 "Scan from where the scanner is, plan and check one attempt, move nothing");
+                 "Scan from where the scanner is, plan and check one attempt, send nothing; says "
+                 "what was seen, what would be done and how near it comes to anything");
   verb->add_flag("--force", run->force, "Replace the rows of another configuration");
   AddCommonOptions(*verb, common, "Result folder", true);
   verb->callback([run, &common] { common.action = [run, &common] { return Run(*run, common); }; });

@@ -10,6 +10,7 @@
 #include "models/base/random.h"
 #include "models/base/text.h"
 #include "scenes/engine/engine_error.h"
+#include "twin/campaign/campaign_keys.h"
 #include "twin/campaign/file_lock.h"
 #include "twin/round/records/json_fields.h"
 #include "twin/round/round_checkpoint.h"
@@ -17,29 +18,6 @@
 namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
-
-/// What a campaign file says besides its variants.
-struct CampaignKeys {
-  Campaign& campaign;
-  void Visit(ConfigVisitor& v) {
-    v.Field("seed", "seed of the campaign; each round's is drawn from it", campaign.seed,
-            {0, 9007199254740991.0});
-    v.Field("rounds", "rounds of every variant", campaign.rounds, {1, 1000000});
-    v.Section("keep", "what stays of rounds besides their rows", campaign.keep);
-  }
-};
-
-/// What is left of a variant when its scenario keys are taken out; these only serve messages.
-struct VariantKeys {
-  std::string name, part, count, profile, set;
-  void Visit(ConfigVisitor& v) {
-    v.Field("name", "what reports call it", name);
-    v.Field("part", "part name or part file", part);
-    v.Field("count", "tubes", count);
-    v.Field("profile", "pipeline profile", profile);
-    v.Field("set", "scenario keys", set);
-  }
-};
 
 bool IsCampaignKey(const std::string& override_text) {
   const std::string first = override_text.substr(0, override_text.find_first_of(".= \t"));

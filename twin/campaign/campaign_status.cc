@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -11,6 +12,7 @@
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
+#include "twin/campaign/campaign_summary.h"
 #include "twin/campaign/shard_file.h"
 #include "twin/statistics/rate.h"
 
@@ -86,15 +88,60 @@ void WriteShardStatus(const std::string& folder, const ShardProgress& progress,
   WriteJsonFile(out, StatusFile(folder, progress.shard));
 }
 
+namespace {
+
+/// "62 parts/h"; of several variants, in their order, "62, 70, 75 parts/h by variant", and of many
+/// the range. Empty before any round told.
+std::string PartsText(const std::vector<RoundWork>& by_variant) {
+  constexpr std::size_t kAllTold = 4;
+  std::vector<double> rates;
+  std::string list;
+  for (const RoundWork& work : by_variant) {
+    const double time_s = work.cell_s + work.compute_s;
+    if (time_s > 0.0) rates.push_back(3600.0 * work.placed / time_s);
+    list += (list.empty() ? "" : ", ") + (time_s > 0.0 ? ToText(rates.back()) : "-");
+  }
+  if (rates.empty()) return "";
+  if (by_variant.size() == 1) return ", " + list + " parts/h";
+  if (by_variant.size() <= kAllTold) return ", " + list + " parts/h by variant";
+  const auto [low, high] = std::minmax_element(rates.begin(), rates.end());
+  return ", " + ToText(*low) + " to " + ToText(*high) + " parts/h by variant";
+}
+
+/// What is counted where several variants share the rounds of a file.
+std::string OfVariants(int rounds, int variants) {
+  if (variants < 2) return "";
+  return " (" + std::to_string(rounds / variants) + " of each of " + std::to_string(variants) +
+         " variants)";
+}
+
+}  // namespace
+
 std::string ProgressText(const ShardProgress& progress) {
   std::string text = "shard " + progress.shard.Name() + ": " + std::to_string(progress.done) + "/" +
-                     std::to_string(progress.total) + " rounds, " +
+                     std::to_string(progress.total) + " rounds" +
+                     OfVariants(progress.total, progress.variants) + ", " +
                      Format("%.1f/h", progress.rounds_per_hour);
+  text += PartsText(progress.work);
   if (progress.seconds_left) text += ", " + DurationText(*progress.seconds_left) + " left";
   text += ", " + ShareText(progress.successes, progress.attempts);
   if (progress.faults > 0) text += ", " + std::to_string(progress.faults) + " crashed";
   return text;
 }
+
+namespace {
+
+PartsPerHour PartsOf(std::vector<RoundRecord>& records, std::int64_t seed, int variant) {
+  // In the order of a merged file, whatever the shards: the same interval as there.
+  std::sort(records.begin(), records.end(),
+            [](const RoundRecord& a, const RoundRecord& b) { return a.round < b.round; });
+  std::vector<RoundFacts> facts;
+  for (const RoundRecord& record : records) facts.push_back(FactsOf(record));
+  return PartsPerHourOf(facts, HourOf::kCellAndComputing,
+                        BootstrapStream(seed, variant).Fork("parts_per_hour"));
+}
+
+}  // namespace
 
 CampaignStatus ReadCampaignStatus(const std::string& folder) {
   const CampaignIdentity identity = ReadCampaignIdentity(folder);
@@ -102,6 +149,8 @@ CampaignStatus ReadCampaignStatus(const std::string& folder) {
   const auto variants = static_cast<int>(identity.variants.size());
   CampaignStatus out;
   out.rounds = rounds * variants;
+  out.variants = variants;
+  std::vector<std::vector<RoundRecord>> records(identity.variants.size());
   const std::vector<std::string> files = ShardFiles(folder);
   if (files.empty() && fs::exists(fs::path(folder) / "rounds.jsonl")) {
     throw Error(ErrorKind::kMissing, folder + ": is a merged result; nothing is run here");
@@ -121,6 +170,7 @@ CampaignStatus ReadCampaignStatus(const std::string& folder) {
         ++out.attempts;
         out.successes += attempt.success == true ? 1 : 0;
       }
+      if (record.variant < variants) records[record.variant].push_back(record);
     }
     AddShardState(folder, content.shard, line);
     out.shards = content.shard.count;
@@ -128,6 +178,11 @@ CampaignStatus ReadCampaignStatus(const std::string& folder) {
     out.rounds_per_hour += line.rounds_per_hour;
     out.problems.insert(out.problems.end(), content.problems.begin(), content.problems.end());
     out.lines.push_back(std::move(line));
+  }
+  for (int variant = 0; variant < variants; ++variant) {
+    if (records[variant].empty()) continue;
+    out.parts_per_hour.emplace_back(identity.variants[variant],
+                                    PartsOf(records[variant], identity.seed, variant));
   }
   if (out.done == out.rounds) {
     out.seconds_left = 0.0;
@@ -144,6 +199,12 @@ Json ToJson(const CampaignStatus& status) {
   out["done"] = status.done;
   out["crashed"] = status.faults;
   out["success"] = ToJson(Counts{status.successes, status.attempts});
+  out["parts_per_hour"] = Json::array();
+  for (const auto& [name, rate] : status.parts_per_hour) {
+    Json row = ToJson(rate);
+    row["name"] = name;
+    out["parts_per_hour"].push_back(std::move(row));
+  }
   out["rounds_per_hour"] = status.rounds_per_hour;
   out["seconds_left"] = status.seconds_left ? Json(*status.seconds_left) : Json(nullptr);
   out["shards"] = status.shards;
@@ -163,9 +224,13 @@ Json ToJson(const CampaignStatus& status) {
 
 std::string ToText(const CampaignStatus& status) {
   std::string text = std::to_string(status.done) + " of " + std::to_string(status.rounds) +
-                     " rounds done, " + ShareText(status.successes, status.attempts);
+                     " rounds done" + OfVariants(status.rounds, status.variants) + ", " +
+                     ShareText(status.successes, status.attempts);
   if (status.faults > 0) text += ", " + std::to_string(status.faults) + " crashed";
   text += "\n";
+  for (const auto& [name, rate] : status.parts_per_hour) {
+    text += "  " + ToText(rate) + " parts per hour, computing included: " + name + "\n";
+  }
   if (status.done < status.rounds) {
     text += Format("%.1f rounds per hour", status.rounds_per_hour);
     text += status.seconds_left ? ", " + DurationText(*status.seconds_left) + " left\n"

@@ -130,6 +130,7 @@ VariantSummary SummarizeVariant(const CampaignResult& result, int variant,
   out.variant = variant;
   out.name = result.VariantName(variant);
   out.totals = TotalsOf(rounds);
+  out.parts_per_hour = PartsPerHourOf(rounds, HourOf::kCell, random.Fork("parts_per_hour"));
   out.metrics = ValuesOf(metrics, rounds, random);
   out.by_tubes_left = ByTubesLeft(rounds, random);
   out.by_motion = ByMotion(rounds, random);
@@ -164,10 +165,22 @@ VariantTimes TimesOf(const CampaignResult& result, int variant) {
     });
     out.parts.push_back({name, OptionalSpread(all), OptionalSpread(without), OptionalSpread(with)});
   }
+  const RandomStream random = BootstrapStream(result.identity.seed, variant).Fork("parts_per_hour");
+  out.parts_per_hour = PartsPerHourOf(rounds, HourOf::kCellAndComputing, random);
+  for (const int times : {2, 4}) {
+    out.with_more_rounds.emplace_back(
+        times, PartsPerHourOf(rounds, HourOf::kCellAndComputing, random, times));
+  }
   return out;
 }
 
 }  // namespace
+
+RandomStream BootstrapStream(std::int64_t campaign_seed, int variant) {
+  // Called as variants once were: a resampling goes on drawing the same rounds.
+  return RandomStream(static_cast<std::uint64_t>(campaign_seed), 0, "bootstrap")
+      .Fork("arm", static_cast<std::uint64_t>(variant));
+}
 
 CampaignSummary Summarize(const CampaignResult& result, const std::vector<Metric>& metrics) {
   std::vector<const RoundRecord*> records;
@@ -177,11 +190,9 @@ CampaignSummary Summarize(const CampaignResult& result, const std::vector<Metric
   out.seed = result.identity.seed;
   out.totals = TotalsOf(all);
   out.metrics = ValuesOf(metrics, all, std::nullopt);
-  const RandomStream random(static_cast<std::uint64_t>(out.seed), 0, "bootstrap");
   for (int variant = 0; variant < result.variants(); ++variant) {
-    // The stream is called as variants once were: a resampling goes on drawing the same rounds.
-    out.variants.push_back(SummarizeVariant(
-        result, variant, metrics, random.Fork("arm", static_cast<std::uint64_t>(variant))));
+    out.variants.push_back(
+        SummarizeVariant(result, variant, metrics, BootstrapStream(out.seed, variant)));
   }
   return out;
 }

@@ -9,6 +9,7 @@
 #include "models/base/json_fwd.h"
 #include "twin/campaign/merge.h"
 #include "twin/round/records/metric.h"
+#include "twin/round/records/throughput.h"
 
 namespace tubetwin {
 
@@ -51,6 +52,7 @@ struct VariantSummary {
   int variant = 0;
   std::string name;
   CampaignTotals totals;
+  PartsPerHour parts_per_hour;                  ///< Of the cell alone: no clock is in a summary.
   std::vector<MetricValue> metrics;             ///< One for each metric, in their order.
   std::vector<TubesLeftSummary> by_tubes_left;  ///< Most tubes first, as the paper's Table 4.
   std::vector<MotionSummary> by_motion;         ///< Most used first.
@@ -68,11 +70,13 @@ struct CampaignSummary {
   std::vector<MetricValue> metrics;  ///< Likewise, without intervals by rounds.
   std::vector<VariantSummary> variants;
 };
+/// What a variant's intervals are drawn from.
+RandomStream BootstrapStream(std::int64_t campaign_seed, int variant);
 CampaignSummary Summarize(const CampaignResult& result,
                           const std::vector<Metric>& metrics = Metrics());
 Json ToJson(const CampaignSummary& summary);
 
-/// Computing times of the attempts of one variant, wall seconds.
+/// Computing times of one variant, wall seconds, and parts an hour with them.
 struct VariantTimes {
   struct Part {
     std::string name;  ///< "modelling", "planning", "evaluator", "total".
@@ -81,6 +85,9 @@ struct VariantTimes {
   int variant = 0;
   std::string name;
   std::vector<Part> parts;
+  PartsPerHour parts_per_hour;  ///< Computing included.
+  /// The same with the interval that 2 and 4 times as many rounds would give.
+  std::vector<std::pair<int, PartsPerHour>> with_more_rounds;
 };
 
 /// A campaign's manifest.json: versions and computing times.

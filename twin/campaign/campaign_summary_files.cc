@@ -37,6 +37,7 @@ Json VariantSummaryJson(const VariantSummary& variant) {
   out["variant"] = variant.variant;
   out["name"] = variant.name;
   AddTotals(variant.totals, out);
+  out["parts_per_hour"] = ToJson(variant.parts_per_hour);
   AddMetrics(variant.metrics, Metric::Place::kHeadline, out);
   out["by_tubes_left"] = Json::array();
   for (const TubesLeftSummary& row : variant.by_tubes_left) {
@@ -100,6 +101,10 @@ Json ToJson(const CampaignSummary& summary) {
   out["schema"] = "tubetwin/campaign_summary/2";
   out["seed"] = summary.seed;
   AddTotals(summary.totals, out);
+  // Several variants are compared, not mixed: each has its own.
+  if (summary.variants.size() == 1) {
+    out["parts_per_hour"] = ToJson(summary.variants.front().parts_per_hour);
+  }
   AddMetrics(summary.metrics, Metric::Place::kHeadline, out);
   out["variants"] = Json::array();
   for (const VariantSummary& variant : summary.variants)
@@ -116,6 +121,11 @@ Json ToJson(const CampaignManifest& manifest) {
   out["compute_s"] = Json::array();
   for (const VariantTimes& times : manifest.compute_s) {
     Json row{{"variant", times.variant}, {"name", times.name}};
+    row["parts_per_hour"] = ToJson(times.parts_per_hour);
+    for (const auto& [factor, rate] : times.with_more_rounds) {
+      row["parts_per_hour"]["with_more_rounds"][std::to_string(factor) + "x"] =
+          rate.interval ? Json::array({rate.interval->low, rate.interval->high}) : Json(nullptr);
+    }
     for (const VariantTimes::Part& part : times.parts) {
       row[part.name] = Json{{"all", ToJson(part.all)},
                             {"without_simulator", ToJson(part.without_simulator)},
@@ -132,6 +142,8 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignManifest& 
     const VariantSummary& variant = summary.variants[i];
     out += "variant " + std::to_string(i) + "  " + variant.name + ", " +
            std::to_string(variant.totals.rounds) + " rounds\n";
+    out += "  parts per hour    " + ToText(manifest.compute_s[i].parts_per_hour) +
+           "; without computing " + ToText(variant.parts_per_hour) + "\n";
     out += "  success           " + RateText(Named(variant.metrics, "success").rate) + "\n";
     out += "  at first attempt  " + RateText(Named(variant.metrics, "first_attempt").rate) + "\n";
     out += "  bins emptied      " + RateText(Named(variant.metrics, "emptied").rate) + "\n";

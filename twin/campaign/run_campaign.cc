@@ -65,6 +65,8 @@ class ShardRunner {
   void CollectTasks() {
     std::set<std::pair<int, int>> found;
     const int variants = static_cast<int>(campaign_.variants.size());
+    progress_.variants = variants;
+    progress_.work.resize(campaign_.variants.size());
     for (const RoundRecord& record : writer_->found()) {
       if (record.variant >= variants || record.round >= campaign_.rounds ||
           record.seed != RoundSeed(campaign_.seed, record.round)) {
@@ -94,6 +96,12 @@ class ShardRunner {
       progress_.successes += attempt.success == true ? 1 : 0;
     }
     progress_.faults += record.summary.crashed() ? 1 : 0;
+    const auto work = WorkOf(FactsOf(record), HourOf::kCellAndComputing);
+    if (!work) return;
+    RoundWork& sum = progress_.work[static_cast<std::size_t>(record.variant)];
+    sum.placed += work->placed;
+    sum.cell_s += work->cell_s;
+    sum.compute_s += work->compute_s;
   }
 
   bool MayBegin() {

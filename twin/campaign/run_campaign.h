@@ -8,16 +8,20 @@
 #include "twin/campaign/campaign.h"
 #include "twin/campaign/round_worker.h"
 #include "twin/campaign/shard.h"
+#include "twin/round/records/throughput.h"
 
 namespace tubetwin {
 
 /// Where a shard is, for progress lines and status files.
 struct ShardProgress {
   Shard shard;
-  int done = 0, total = 0;  ///< Rounds of all variants.
+  int done = 0, total = 0;  ///< Rounds, each variant's counted on its own.
   int running = 0;
-  int faults = 0;                      ///< Rounds that threw or crashed.
-  int successes = 0, attempts = 0;     ///< By truth, over all rounds done.
+  int faults = 0;                   ///< Rounds that threw or crashed.
+  int successes = 0, attempts = 0;  ///< By truth, over all rounds done.
+  int variants = 1;
+  /// Of the rounds done of each variant: placed tubes, and cell and computing time.
+  std::vector<RoundWork> work;
   double rounds_per_hour = 0.0;        ///< Of this process; 0 before its first round ended.
   std::optional<double> seconds_left;  ///< Nothing as long as there is no rate.
   long peak_memory_kB = 0;             ///< Largest of the processes of rounds so far.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace tubetwin {
 namespace {
@@ -9,7 +10,8 @@ namespace {
 /// Follows trajectories exactly, and refuses what a real arm would.
 class DryArm : public Arm {
  public:
-  DryArm(const CellClock& clock, const Arm& real) : clock_(clock), q_(real.State().q) {}
+  DryArm(const CellClock& clock, const Arm& real, const Gripper& gripper)
+      : clock_(clock), gripper_(gripper), q_(real.State().q) {}
 
   ArmState State() const override {
     ArmState state;
@@ -35,6 +37,7 @@ class DryArm : public Arm {
     path_ = trajectory.trajectory();
     end_s_ = path_.duration_s();
     began_ = clock_.Now();
+    motions_.push_back({path_, gripper_.State().opening_m});
     return {};
   }
   CommandResult Append(const CheckedTrajectory&) override {
@@ -42,41 +45,55 @@ class DryArm : public Arm {
   }
   void Stop(StopKind) override { end_s_ = State().progress_s; }
   void SetPayload(double, const Vector3&) override {}
+  const std::vector<RehearsedMotion>& motions() const { return motions_; }
 
  private:
   static CommandResult Rejected(const char* why) { return {CommandResult::Status::kRejected, why}; }
   const CellClock& clock_;
+  const Gripper& gripper_;  ///< The rehearsed one.
   JointVector q_;
+  std::vector<RehearsedMotion> motions_;
   JointTrajectory path_;
   double end_s_ = 0.0;
   TimeNs began_{0};
 };
 
-/// Arrives wherever it is sent.
+/// Arrives wherever it is sent, or closes on what it is told to hold.
 class DryGripper : public Gripper {
  public:
-  DryGripper(const CellClock& clock, const Gripper& real) : clock_(clock) {
-    from_m_ = to_m_ = real.State().opening_m;
+  DryGripper(const CellClock& clock, const Gripper& real, double held_m)
+      : clock_(clock), held_m_(held_m) {
+    from_m_ = to_m_ = asked_m_ = real.State().opening_m;
   }
   void Command(const GripperCommand& command) override {
+    ++commands_;
     from_m_ = State().opening_m;
-    to_m_ = command.opening_m;
+    asked_m_ = command.opening_m;
+    meets_ = asked_m_ < held_m_ && from_m_ >= held_m_;
+    to_m_ = meets_ ? held_m_ : asked_m_;
     speed_m_s_ = command.speed_m_s;
     began_ = clock_.Now();
   }
   GripperState State() const override {
     GripperState state;
     state.time = clock_.Now();
-    state.requested_m = to_m_;
+    state.requested_m = asked_m_;
     const double gone_m = speed_m_s_ * Seconds(clock_.Now() - began_);
     const bool there = gone_m >= std::abs(to_m_ - from_m_);
     state.opening_m = there ? to_m_ : from_m_ + std::copysign(gone_m, to_m_ - from_m_);
-    state.object = there ? GripperObject::kAtPosition : GripperObject::kMoving;
+    state.object = !there   ? GripperObject::kMoving
+                   : meets_ ? GripperObject::kContactClosing
+                            : GripperObject::kAtPosition;
     return state;
   }
+  int commands() const { return commands_; }
 
  private:
   const CellClock& clock_;
+  double held_m_;
+  int commands_ = 0;
+  bool meets_ = false;
+  double asked_m_ = 0.0;
   double from_m_, to_m_, speed_m_s_ = 0.1;
   TimeNs began_{0};
 };
@@ -84,18 +101,21 @@ class DryGripper : public Gripper {
 }  // namespace
 
 struct DryRunCell::Impl {
-  explicit Impl(Cell& real)
-      : arm(real.clock, real.arm),
-        gripper(real.clock, real.gripper),
+  Impl(Cell& real, double held_m)
+      : gripper(real.clock, real.gripper, held_m),
+        arm(real.clock, real.arm, gripper),
         cell{real.clock,   arm,        gripper,  real.wrist,
              real.scanner, real.model, real.bin, real.safety} {}
-  DryArm arm;
   DryGripper gripper;
+  DryArm arm;
   Cell cell;
 };
 
-DryRunCell::DryRunCell(Cell& cell) : impl_(std::make_unique<Impl>(cell)) {}
+DryRunCell::DryRunCell(Cell& cell, double held_m) : impl_(std::make_unique<Impl>(cell, held_m)) {}
 DryRunCell::~DryRunCell() = default;
 Cell& DryRunCell::cell() { return impl_->cell; }
+DryRunReport DryRunCell::Report() const {
+  return ReportOf(impl_->cell, impl_->arm.motions(), impl_->gripper.commands());
+}
 
 }  // namespace tubetwin

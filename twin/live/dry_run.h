@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "hw_bridge/cell/cell.h"
+#include "twin/live/dry_run_report.h"
 
 namespace tubetwin {
 
@@ -12,9 +13,13 @@ namespace tubetwin {
 /// CellPurpose::kLook so that its arm and gripper take no commands.
 class DryRunCell {
  public:
-  explicit DryRunCell(Cell& cell);
+  /// `held_m`: fingers that close stop at that width, as on a part, so that lifting is rehearsed
+  /// too; 0: they close on nothing. The wrist, which is the real one, weighs nothing either way.
+  explicit DryRunCell(Cell& cell, double held_m = 0.0);
   ~DryRunCell();
   Cell& cell();
+  /// What the motions so far show, none of which was sent.
+  DryRunReport Report() const;
 
  private:
   struct Impl;

@@ -12,6 +12,8 @@ namespace {
 constexpr Colour kHidden = {0.12f, 0.12f, 0.14f};
 constexpr Colour kUnexplained = {0.95f, 0.10f, 0.80f};
 constexpr Colour kUnseen = {0.55f, 0.10f, 0.12f};
+constexpr Colour kScanned = {0.20f, 0.55f, 0.80f};
+constexpr double kScannedRadius_m = 0.0018;
 constexpr double kHiddenRadius_m = 0.0025, kUnexplainedRadius_m = 0.0025, kHatchRadius_m = 0.0008;
 constexpr std::size_t kMaxPlaces = 3000;  ///< The scene holds no more; the rest look the same.
 
@@ -40,6 +42,16 @@ void AddHidden(const PerceivedPicture::Tube& tube, const RigidTransform& X_BN,
   }
 }
 
+/// Places as dots, evenly thinned to what the scene holds.
+void AddPlaces(const Polyline& places_N, const RigidTransform& X_BN, double radius_m,
+               const Colour& colour, std::vector<Stroke>& strokes) {
+  const std::size_t stride = places_N.size() / kMaxPlaces + 1;
+  for (std::size_t i = 0; i < places_N.size(); i += stride) {
+    const Vector3 p_B = X_BN * places_N[i];
+    strokes.push_back({{p_B, p_B + Vector3(0, 0, 1e-4)}, radius_m, colour});
+  }
+}
+
 std::vector<Stroke> Strokes(const PerceivedPicture& seen) {
   const RigidTransform& X_BN = seen.bin.X_BN;
   std::vector<Stroke> strokes;
@@ -47,31 +59,30 @@ std::vector<Stroke> Strokes(const PerceivedPicture& seen) {
   for (const Polyline& line_N : seen.unseen_floor_N) {
     strokes.push_back({Transformed(X_BN, line_N), kHatchRadius_m, kUnseen});
   }
-  const std::size_t stride = seen.unexplained_N.size() / kMaxPlaces + 1;
-  for (std::size_t i = 0; i < seen.unexplained_N.size(); i += stride) {
-    const Vector3 p_B = X_BN * seen.unexplained_N[i];
-    strokes.push_back({{p_B, p_B + Vector3(0, 0, 1e-4)}, kUnexplainedRadius_m, kUnexplained});
-  }
+  AddPlaces(seen.unexplained_N, X_BN, kUnexplainedRadius_m, kUnexplained, strokes);
+  AddPlaces(seen.cloud_N, X_BN, kScannedRadius_m, kScanned, strokes);
   return strokes;
 }
 
 cv::Scalar Bgr(const Colour& c) { return {255 * c[2], 255 * c[1], 255 * c[0]}; }
 
-void DrawLegend(cv::Mat& image, const std::string& caption) {
+void DrawLegend(cv::Mat& image, const std::string& caption, bool scanned) {
   const auto text = [&image](const std::string& words, const cv::Point& at) {
     cv::putText(image, words, at + cv::Point(1, 1), cv::FONT_HERSHEY_SIMPLEX, 0.55, {20, 20, 20}, 2,
                 cv::LINE_AA);
     cv::putText(image, words, at, cv::FONT_HERSHEY_SIMPLEX, 0.55, {245, 245, 245}, 1, cv::LINE_AA);
   };
-  const struct {
+  struct Entry {
     const char* name;
     Colour colour;
-  } entries[] = {{"free", ClassColour(0)},      {"weak", ClassColour(1)},
-                 {"strong", ClassColour(2)},    {"hidden", kHidden},
-                 {"unexplained", kUnexplained}, {"unseen floor", kUnseen}};
+  };
+  std::vector<Entry> entries = {{"free", ClassColour(0)},      {"weak", ClassColour(1)},
+                                {"strong", ClassColour(2)},    {"hidden", kHidden},
+                                {"unexplained", kUnexplained}, {"unseen floor", kUnseen}};
+  if (scanned) entries = {{"scanned", kScanned}};
   text(caption, {24, 36});
   int x = 24;
-  for (const auto& entry : entries) {
+  for (const Entry& entry : entries) {
     const int y = image.rows - 28;
     cv::circle(image, {x + 7, y - 5}, 7, Bgr(entry.colour), cv::FILLED, cv::LINE_AA);
     text(entry.name, {x + 22, y});
@@ -98,7 +109,7 @@ void RenderPerceivedPicture(const PerceivedPicture& seen, const std::string& pat
     DrawTag(image, view, Transformed(seen.bin.X_BN, tube.centerline_N), seen.bin.up_B(),
             std::to_string(tube.id));
   }
-  DrawLegend(pixels, seen.caption);
+  DrawLegend(pixels, seen.caption, !seen.cloud_N.empty());
   WritePng(image, path);
 }
 

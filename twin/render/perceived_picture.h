@@ -21,6 +21,7 @@ struct PerceivedPicture {
   std::vector<Tube> tubes;
   Polyline unexplained_N;                ///< Places, in no order.
   std::vector<Polyline> unseen_floor_N;  ///< Lines that hatch what no view saw.
+  Polyline cloud_N;                      ///< Points of a scan, in no order; at most 3000 are drawn.
   std::string caption;
 };
 

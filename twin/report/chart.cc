@@ -54,6 +54,15 @@ std::string Grid(double left, double right, double step, double from, double to,
   return out;
 }
 
+constexpr double kTrack = 1000.0;  ///< Width of a row's drawing, which is stretched to its place.
+
+/// A row of bars: names and numbers are text beside it, which wraps and stays readable.
+std::string TrackRow(const std::string& name, const std::string& rects, const std::string& told) {
+  return "<div class=\"bar-row\"><div class=\"bar-name\">" + Escaped(name) +
+         "</div><svg class=\"track\" viewBox=\"0 0 1000 10\" preserveAspectRatio=\"none\">" +
+         rects + "</svg><div class=\"bar-told\">" + Escaped(told) + "</div></div>\n";
+}
+
 constexpr int kVariantColours = 6;
 
 std::string VariantClass(std::size_t i) { return "variant" + std::to_string(i % kVariantColours); }
@@ -165,37 +174,45 @@ std::string IntervalMarkSvg(double share, double low, double high) {
          Fixed(x_of(share), 1) + "\" cy=\"9\" r=\"4\"/></g></svg>";
 }
 
-std::string BarsSvg(const std::vector<BarRow>& rows, const std::vector<std::string>& classes,
-                    const std::string& title) {
-  constexpr double kWidth = 520.0, kRow = 26.0, kName = 160.0, kTold = 70.0;
+std::string BarsHtml(const std::vector<BarRow>& rows, const std::vector<std::string>& classes,
+                     const std::string& title) {
   double longest = 0.0;
   for (const BarRow& row : rows) {
     longest = std::max(longest, std::accumulate(row.segments.begin(), row.segments.end(), 0.0));
   }
   if (!(longest > 0.0)) return "";
-  std::string out = Open(kWidth, kRow * static_cast<double>(rows.size()) + 4.0, "chart-svg", title);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double y = kRow * static_cast<double>(i) + 4.0;
-    std::string name = rows[i].name;
-    constexpr std::size_t kFits = 20;  // Of this width; the hint tells all.
-    if (name.size() > kFits) {
-      std::size_t cut = kFits - 1;
-      while (cut > 0 && (static_cast<unsigned char>(name[cut]) & 0xC0) == 0x80) --cut;
-      name = name.substr(0, cut) + "\xe2\x80\xa6";
-    }
-    out += "<g><title>" + Escaped(rows[i].name + ": " + rows[i].told) + "</title>" +
-           Text(kName - 8.0, y + 15.0, "end", name) + "</g>";
-    double x = kName;
-    for (std::size_t k = 0; k < rows[i].segments.size(); ++k) {
-      const double width = std::max(0.0, rows[i].segments[k]) / longest * (kWidth - kName - kTold);
+  std::string out = "<div class=\"bars\" role=\"img\" aria-label=\"" + Escaped(title) + "\">\n";
+  for (const BarRow& row : rows) {
+    std::string rects;
+    double x = 0.0;
+    for (std::size_t k = 0; k < row.segments.size(); ++k) {
+      const double width = std::max(0.0, row.segments[k]) / longest * kTrack;
       if (width <= 0.0) continue;
-      out += Rect(classes.at(k), x, y + 2.0, width, kRow - 8.0,
-                  rows[i].name + ": " + Short(std::round(100.0 * rows[i].segments[k]) / 100.0));
+      rects += Rect(classes.at(k), x, 0.0, width, 10.0,
+                    row.name + ": " + Short(std::round(100.0 * row.segments[k]) / 100.0));
       x += width;
     }
-    out += Text(x + 7.0, y + 15.0, "start", rows[i].told);
+    out += TrackRow(row.name, rects, row.told);
   }
-  return out + "</svg>\n";
+  return out + "</div>\n";
+}
+
+std::string GanttHtml(const std::vector<GanttRow>& rows, const std::string& title) {
+  double end_s = 0.0;
+  for (const GanttRow& row : rows) end_s = std::max(end_s, row.to_s);
+  if (!(end_s > 0.0)) return "";
+  std::string out =
+      "<div class=\"bars gantt\" role=\"img\" aria-label=\"" + Escaped(title) + "\">\n";
+  for (const GanttRow& row : rows) {
+    const double x = row.from_s / end_s * kTrack;
+    const double took_s = row.to_s - row.from_s;
+    out +=
+        TrackRow(row.name,
+                 Rect(row.css_class, x, 0.0, std::max(2.0, took_s / end_s * kTrack), 10.0,
+                      row.name + ": " + Fixed(row.from_s, 1) + " to " + Fixed(row.to_s, 1) + " s"),
+                 Fixed(took_s, took_s < 0.95 ? 2 : 1) + " s");
+  }
+  return out + "</div>\n";
 }
 
 }  // namespace tubetwin

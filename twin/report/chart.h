@@ -43,15 +43,24 @@ std::string IntervalChartSvg(const std::vector<IntervalSeries>& series, const st
 /// A share on a line from 0 to 100 %, with its interval, for a row of a table.
 std::string IntervalMarkSvg(double share, double low, double high);
 
-/// Horizontal stacked bars of numbers >= 0 that are told at their ends, one row each; segment i has
-/// the class `classes[i]`. Empty when all are 0.
+/// Horizontal stacked bars of numbers >= 0 as HTML, one row each, with its whole name before and
+/// what is told behind; segment i has the class `classes[i]`. Empty when all are 0.
 struct BarRow {
   std::string name;
   std::vector<double> segments;
   std::string told;
 };
-std::string BarsSvg(const std::vector<BarRow>& rows, const std::vector<std::string>& classes,
-                    const std::string& title);
+std::string BarsHtml(const std::vector<BarRow>& rows, const std::vector<std::string>& classes,
+                     const std::string& title);
+
+/// What happens from when to when, seconds from the begin, as HTML with a row each. Empty when
+/// nothing takes time.
+struct GanttRow {
+  std::string name;
+  double from_s = 0.0, to_s = 0.0;
+  std::string css_class;
+};
+std::string GanttHtml(const std::vector<GanttRow>& rows, const std::string& title);
 
 /// The 1, 2 or 5 times a power of ten that gives at most five steps up to `top` > 0.
 double NiceStep(double top);

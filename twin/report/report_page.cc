@@ -1,40 +1,17 @@
 #include "twin/report/report_page.h"
 
 #include "models/base/json.h"
+#include "twin/report/front_page.h"
 #include "twin/report/page.h"
 #include "twin/report/parts.h"
 
 namespace tubetwin {
 namespace {
 
-std::string Eyebrow(const ReportInput& input) {
-  if (input.is_round) return "One round";
-  return "Campaign, seed " + std::to_string(input.summary.seed) + ", program " +
-         Shown(input.result.identity.program) + ", MuJoCo " + Shown(input.result.identity.mujoco);
-}
-
-/// What the page is about, in a sentence or two.
-std::string Lead(const ReportInput& input) {
-  const CampaignTotals& totals = input.summary.totals;
-  if (input.is_round) {
-    const RoundSummary& round = input.result.records.front().summary;
-    return std::string(round.emptied ? "<b class=\"good\">The bin was emptied.</b> "
-                                     : "<b class=\"bad\">The bin was not emptied.</b> ") +
-           "The round ended: " + Escaped(round.EndName()) +
-           (round.end_detail.empty() ? "" : " (" + Escaped(round.end_detail) + ")") + ".";
-  }
-  const std::size_t variants = input.summary.variants.size();
-  return CountHtml(totals.rounds, Pointer() / "rounds") + " bins with " +
-         CountHtml(totals.tubes_start, Pointer() / "tubes_start") + " tubes" +
-         (variants > 1
-              ? " in " + std::to_string(variants) + " variants that share the seeds of their rounds"
-              : ": " + Escaped(input.summary.variants.front().name)) +
-         ".";
-}
-
+/// Rates of a single variant; several are not mixed.
 std::string Cards(const ReportInput& input) {
   // One variant has the intervals by rounds, the totals over variants have not.
-  const bool one = input.summary.variants.size() == 1 && !input.is_round;
+  const bool one = !input.is_round;
   const Pointer at = one ? VariantPointer(input, 0) : Pointer();
   std::string out;
   for (const MetricValue& value :
@@ -43,7 +20,7 @@ std::string Cards(const ReportInput& input) {
     if (input.is_round && value.metric->per_round) continue;  // One round has no rate of rounds.
     out += RateCard(Escaped(value.metric->label), value.rate, at / value.metric->name);
   }
-  return "<div class=\"cards\">\n" + out + "</div>\n";
+  return out;
 }
 
 std::string Facts(const ReportInput& input) {
@@ -66,15 +43,6 @@ std::string Facts(const ReportInput& input) {
   facts.emplace_back("per placed tube, s",
                      FixedHtml(round.SecondsPerPick(), at / "sim_s_per_pick", 1));
   return FactList(facts);
-}
-
-std::string Headline(const ReportInput& input) {
-  const CampaignTotals& totals = input.summary.totals;
-  return HeaderHtml(Eyebrow(input),
-                    "Placed " + CountHtml(totals.placed, Pointer() / "placed") + " of " +
-                        CountHtml(totals.tubes_start, Pointer() / "tubes_start") + " tubes",
-                    Lead(input)) +
-         Cards(input) + Facts(input);
 }
 
 /// Picture and film of a round; a campaign has none.
@@ -112,13 +80,18 @@ std::string Footer(const ReportInput& input, const KeptForReport& kept) {
 }  // namespace
 
 std::string ReportHtml(const ReportInput& input, const KeptForReport& kept, const Json& told) {
-  std::string body = Headline(input) + PictureHtml(kept);
+  const bool several = input.summary.variants.size() > 1;
+  std::string body = FrontPage(input, several ? "" : Cards(input)) + (several ? "" : Facts(input)) +
+                     PictureHtml(kept);
   if (input.summary.totals.attempts == 0) {
     body += "<p>There was no attempt.</p>\n";
   } else {
-    body += Section("variants", "Variants", VariantsTable(input)) + "<div class=\"two\">" +
+    body += Section("cycle", "Where a pick's time goes", CycleTime(input)) +
+            Section("failures", "What fails", FailureModes(input)) + "<div class=\"two\">" +
+            Section("levers", "What would raise the rate", Levers(input)) +
+            Section("more", "What more rounds would tell", MoreRounds(input)) + "</div>\n" +
+            Section("variants", "Variants", VariantsTable(input)) +
             Section("left", "Success by tubes left", TubesLeft(input)) +
-            Section("failures", "Failure classes", Failures(input)) + "</div>\n" +
             Section("times", "Where the time goes", Times(input)) +
             Section("view", "One attempt in 3-D", ViewerHtml(kept.attempts)) +
             Section("gallery", "Failed attempts", GalleryHtml(kept.attempts)) +
@@ -135,8 +108,8 @@ std::string ReportHtml(const ReportInput& input, const KeptForReport& kept, cons
   if (!input.is_round) content["times"] = TimesHistogram(input.result);
   content.update(AttemptData(kept.attempts));
   if (!kept.picture.empty()) content["pictures"].push_back(kept.picture);
-  return ReportPage(input.is_round ? "tubetwin: one round" : "tubetwin: campaign",
-                    body + Footer(input, kept), content);
+  const char* plain = input.is_round ? "tubetwin: one round" : "tubetwin: campaign";
+  return ReportPage(input.title.empty() ? plain : input.title, body + Footer(input, kept), content);
 }
 
 }  // namespace tubetwin

@@ -125,26 +125,6 @@ std::string TubesLeft(const ReportInput& input) {
   return charts + "<details><summary>The numbers</summary>" + tables + "</details>\n";
 }
 
-std::string Failures(const ReportInput& input) {
-  std::string out;
-  for (const VariantSummary& variant : input.summary.variants) {
-    std::vector<BarRow> rows;
-    for (const auto& [failure, count] : variant.failures) {
-      rows.push_back({FailureName(failure), {static_cast<double>(count)}, std::to_string(count)});
-    }
-    out += Subheading(input, variant) +
-           (rows.empty() ? "<p class=\"good\">No attempt failed.</p>\n"
-                         : Figure(BarsSvg(rows, {"bad-bar"}, "Failed attempts by class"), ""));
-    if (input.is_round) continue;  // How it ended stands at the head.
-    std::string ends;
-    for (const auto& [end, count] : variant.end_reasons) {
-      ends += (ends.empty() ? "" : ", ") + Escaped(FailureName(end)) + " " + std::to_string(count);
-    }
-    out += "<p class=\"quiet\">Rounds ended: " + ends + ".</p>\n";
-  }
-  return out;
-}
-
 std::string Motions(const ReportInput& input) {
   std::string rows;
   for (std::size_t v = 0; v < input.summary.variants.size(); ++v) {

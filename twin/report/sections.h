@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "twin/campaign/campaign_summary.h"
+#include "twin/report/study_setup.h"
 #include "twin/report/text.h"
 
 namespace tubetwin {
@@ -15,19 +16,24 @@ struct ReportInput {
   CampaignManifest manifest;    ///< Likewise.
   bool computing_times = true;  ///< Tell them; without, nothing on the page comes from a clock.
   bool is_round = false;        ///< Of one round: then the result has one record.
+  std::string title, customer;  ///< Plain text; empty: what the page says by itself.
+  /// What each variant was run with; empty: the page does not tell it.
+  std::vector<StudySetup> setups;
 };
+
+/// The parts an hour that the page tells of a variant: with computing time where it is told and was
+/// kept, else of the cell alone.
+const PartsPerHour& PageRate(const ReportInput& input, std::size_t variant);
 
 /// Where a variant's numbers stand in summary.json; a single round's summary has no variants.
 Pointer VariantPointer(const ReportInput& input, std::size_t variant);
 
 /// Sections of pages as HTML, without their headings; empty where there is nothing to say.
 
-/// Name, rounds, headline rates and losses of each variant; nothing for a single one.
+/// Name, rounds, rates and losses of each variant; nothing for a single one.
 std::string VariantsTable(const ReportInput& input);
 /// Success by tubes left: a chart with intervals, and the numbers folded away.
 std::string TubesLeft(const ReportInput& input);
-/// Failure classes, and how rounds ended.
-std::string Failures(const ReportInput& input);
 /// Where the time goes: of one round each attempt, of several means and a distribution.
 std::string Times(const ReportInput& input);
 std::string Motions(const ReportInput& input);

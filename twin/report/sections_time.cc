@@ -91,7 +91,7 @@ std::string MeanTimes(const ReportInput& input) {
   }
   const std::vector<std::string> classes = {"part0", "part1", "part2", "part3",
                                             "part4", "part4", "part4"};
-  return Figure(BarsSvg(bars, classes, "Mean seconds of an attempt"),
+  return Figure(BarsHtml(bars, classes, "Mean seconds of an attempt"),
                 "Mean seconds of an attempt: simulated time of the cell plus computing time. " +
                     Legend({{"part0", "scan"},
                             {"part1", "move"},

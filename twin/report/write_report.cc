@@ -145,7 +145,7 @@ std::string LinkFrom(const std::string& file, const std::string& folder) {
 }
 
 std::size_t WriteRoundReport(const std::string& folder, const std::string& file,
-                             bool computing_times) {
+                             bool computing_times, const ReportHead& head) {
   const fs::path at(folder);
   const RoundRecord record = ReadRoundRecord(folder);
   KeptForReport kept;
@@ -156,19 +156,29 @@ std::size_t WriteRoundReport(const std::string& folder, const std::string& file,
     kept.picture = Base64(ReadFile((at / "picture.png").string()));
   }
   if (fs::exists(at / "video.mp4")) kept.video = (fs::path(kept.link) / "video.mp4").string();
-  return Write(
-      file, ReportHtml(RoundReportInput(record, computing_times), kept, RoundSummaryJson(record)));
+  ReportInput input = RoundReportInput(record, computing_times);
+  input.title = head.title;
+  input.customer = head.customer;
+  input.setups = {SetupOfRound(folder)};
+  return Write(file, ReportHtml(input, kept, RoundSummaryJson(record)));
 }
 
 std::size_t WriteCampaignReport(const std::string& folder,
                                 const std::vector<std::string>& kept_folders,
-                                const std::string& file) {
-  const ReportInput input = CampaignReportInput(ReadCampaignResult(folder));
+                                const std::string& file, const ReportHead& head) {
+  ReportInput input = CampaignReportInput(ReadCampaignResult(folder));
+  input.title = head.title;
+  input.customer = head.customer;
+  input.setups = SetupsOf(input.result.identity);
   CheckSummary(input.result, folder);
   std::vector<std::string> folders = {folder};
   folders.insert(folders.end(), kept_folders.begin(), kept_folders.end());
   KeptForReport kept;
-  kept.attempts = ChooseShown(KeptRounds(input.result, folders), file);
+  const std::vector<Kept> rounds = KeptRounds(input.result, folders);
+  for (const Kept& one : rounds) {
+    AddStartPile(one.folder, input.setups.at(static_cast<std::size_t>(one.record->variant)));
+  }
+  kept.attempts = ChooseShown(rounds, file);
   return Write(file, ReportHtml(input, kept, ToJson(input.summary)));
 }
 

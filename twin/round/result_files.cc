@@ -12,6 +12,7 @@
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "scenes/engine/engine_error.h"
+#include "twin/round/records/throughput.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;
@@ -79,6 +80,7 @@ Json RoundSummaryJson(const RoundRecord& record, const std::vector<Metric>& metr
   for (const Metric& metric : metrics) {
     if (metric.place == Metric::Place::kMeasure) AddValue(ValueOf(metric, facts, {}), out);
   }
+  out["parts_per_hour"] = ToJson(PartsPerHourOf(facts, HourOf::kCell, {}));
   return out;
 }
 

@@ -78,6 +78,7 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
   if (cell_recorder) EndRecording(*cell_recorder, report);
   if (options.replay != nullptr) EndReplay(*options.replay, report);
 
+  recorder.OnRoundEnd(report);
   const double sim_s = Seconds(plain.clock.Now());
   recorder.Finish();
   RoundResult result;

@@ -37,6 +37,8 @@ struct RoundOptions {
   /// Makes the page of the finished result folder; empty: there is none. Pages are made in a room
   /// above this one, so whoever starts a round hands it in.
   std::function<void(const std::string& folder)> write_report;
+  /// Told of every look into the bin and the plan made from it, or null; may be empty.
+  std::function<void(const TubeScene& scene, const PickPlan* plan)> on_scene;
   /// As PickCycleSetup's: an operator's word after a stop.
   std::function<Acknowledgement(const std::string&)> acknowledge;
 };

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <utility>
 
-#include "models/base/cloud/cloud.h"
+#include "models/base/cloud/packed_cloud.h"
 #include "models/base/json.h"
 #include "models/base/step_timer.h"
 #include "twin/cell/truth.h"
@@ -19,7 +20,31 @@ namespace {
 /// which takes a second itself: a hose that lay on others rocks until about two seconds later.
 constexpr TimeNs kUntilLook = std::chrono::seconds(1);
 
+constexpr double kAroundGrasp_m = 0.05;
+
+int PointsAround(const OrganizedCloud& view, const Vector3& p_N) {
+  const Eigen::Vector3f p_S = (view.X_NS.inverse() * p_N).cast<float>();
+  constexpr auto kReach = static_cast<float>(kAroundGrasp_m);
+  return static_cast<int>(
+      std::count_if(view.p_SP.begin(), view.p_SP.end(), [&](const Eigen::Vector3f& p) {
+        return IsValid(p) && (p - p_S).squaredNorm() < kReach * kReach;
+      }));
+}
+
 }  // namespace
+
+std::vector<std::size_t> ViewsOfFailure(const std::vector<OrganizedCloud>& views,
+                                        const AttemptRecord& attempt) {
+  std::vector<std::size_t> all(views.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  if (!attempt.chosen || views.empty()) return all;
+  std::vector<int> counts;
+  for (const OrganizedCloud& view : views) {
+    counts.push_back(PointsAround(view, attempt.chosen->p_NG));
+  }
+  return {
+      static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin())};
+}
 
 RoundRecorder::RoundRecorder(RoundScorer scorer, const RoundOptions& options)
     : options_(options), scorer_(std::move(scorer)), attempt_began_(WallClock_s()) {}
@@ -42,6 +67,10 @@ void RoundRecorder::OnAttemptEnd(const AttemptReport& report) {
   if (!scorer_.sees_truth()) Conclude();
 }
 
+void RoundRecorder::OnRoundEnd(const RoundReport& report) {
+  timings.push_back({kAfterLastAttempt, report.compute_s, WallClock_s() - attempt_began_});
+}
+
 void RoundRecorder::Conclude() {
   const AttemptRecord& last = attempts.back();
   const bool failed = !last.success.value_or(last.outcome == AttemptOutcome::kPlaced);
@@ -58,8 +87,8 @@ void RoundRecorder::SaveFailure() {
   const std::string folder = (fs::path(options_.out_folder) / "failures" / name).string();
   WriteJsonFile(ToJson(attempts.back(), RowPlace()), folder + "/attempt.json");
   OnFailure(folder);
-  for (std::size_t i = 0; i < last_views_.size(); ++i) {
-    WritePcd(last_views_[i], folder + "/view_" + std::to_string(i) + ".pcd");
+  for (const std::size_t i : ViewsOfFailure(last_views_, attempts.back())) {
+    WritePackedPcd(last_views_[i], folder + "/view_" + std::to_string(i) + ".pcd.zst");
   }
 }
 
@@ -82,6 +111,7 @@ void TwinRoundRecorder::OnStep(const std::string& caption) {
 }
 
 void TwinRoundRecorder::OnScene(const TubeScene& scene, const PickPlan* plan) {
+  RoundRecorder::OnScene(scene, plan);
   Recording::Overlay overlay;
   for (std::size_t i = 0; i < scene.tubes.size(); ++i) {
     overlay.lines_N.push_back(scene.tubes[i].centerline_N);

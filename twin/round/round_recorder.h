@@ -14,6 +14,11 @@
 
 namespace tubetwin {
 
+/// Which of the views that an attempt was planned from its failure keeps: the one that shows most
+/// points within 5 cm of the grasp; all where there was no plan, since each may be why.
+std::vector<std::size_t> ViewsOfFailure(const std::vector<OrganizedCloud>& views,
+                                        const AttemptRecord& attempt);
+
 /// Follows one round on any cell: records of attempts, the clouds of failed attempts. Lives as long
 /// as the round.
 class RoundRecorder : public CycleObserver {
@@ -22,9 +27,14 @@ class RoundRecorder : public CycleObserver {
 
   void OnStep(const std::string& caption) override;
   void OnClouds(const std::vector<OrganizedCloud>& views) override { last_views_ = views; }
+  void OnScene(const TubeScene& scene, const PickPlan* plan) override {
+    if (options_.on_scene) options_.on_scene(scene, plan);
+  }
   void OnDetection(const Detection&) override { scorer_.AtDetection(); }
   void OnAttemptEnd(const AttemptReport& report) override;
 
+  /// The cycle ended: keeps what it computed after the last attempt.
+  void OnRoundEnd(const RoundReport& report);
   /// After the last attempt: completes its record, if need be by letting time pass.
   virtual void Finish() {}
   RoundSummary Summary(const RoundReport& report, double sim_s) const {

@@ -96,8 +96,7 @@ Json FindingsJson(const std::vector<Finding>& findings) {
   return out;
 }
 
-void RequirePossible(const std::vector<Finding>& findings, const std::string& who,
-                     ErrorKind kind) {
+void RequirePossible(const std::vector<Finding>& findings, const std::string& who, ErrorKind kind) {
   const Finding* first = nullptr;
   int more = -1;
   for (const Finding& finding : findings) {
@@ -106,10 +105,9 @@ void RequirePossible(const std::vector<Finding>& findings, const std::string& wh
     ++more;
   }
   if (first == nullptr) return;
-  throw Error(kind,
-              who + " cannot work: " + Said(*first) + "\n" + first->remedy +
-                  (more > 0 ? "\n" + std::to_string(more) + " more impossible" : "") +
-                  "\nconfig check shows all that was judged");
+  throw Error(kind, who + " cannot work: " + Said(*first) + "\n" + first->remedy +
+                        (more > 0 ? "\n" + std::to_string(more) + " more impossible" : "") +
+                        "\nconfig check shows all that was judged");
 }
 
 }  // namespace tubetwin

@@ -100,6 +100,7 @@ AttemptRecord RoundScorer::Believed(const AttemptReport& report) {
   out.outcome = report.outcome;
   out.reason = report.reason;
   out.sim_s = report.sim_s;
+  out.phases_s = report.phases_s;
   if (!tubes_start_) tubes_start_ = report.tubes_in_bin;
   return out;
 }

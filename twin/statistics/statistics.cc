@@ -24,6 +24,26 @@ double SortedQuantile(const std::vector<double>& sorted, double share) {
   return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
+/// The percentile interval over samples of `draws` of the indices [0, count).
+Interval BootstrapOf(int count, int draws,
+                     const std::function<double(const std::vector<int>&)>& statistic,
+                     RandomStream random, int resamples) {
+  TT_CHECK(count >= 0 && draws >= 0 && resamples > 0);
+  std::vector<double> found;
+  std::vector<int> drawn(static_cast<std::size_t>(draws));
+  for (int r = 0; r < resamples && count > 0; ++r) {
+    for (int& i : drawn) i = static_cast<int>(random.Index(static_cast<std::uint32_t>(count)));
+    const double value = statistic(drawn);
+    if (std::isfinite(value)) found.push_back(value);
+  }
+  if (found.empty()) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    return {kNone, kNone};
+  }
+  std::sort(found.begin(), found.end());
+  return {SortedQuantile(found, kTail), SortedQuantile(found, 1.0 - kTail)};
+}
+
 }  // namespace
 
 Counts Total(const std::vector<Counts>& clusters) {
@@ -54,20 +74,22 @@ ShareInterval ClusterBootstrap95(const std::vector<Counts>& clusters, RandomStre
 
 Interval Bootstrap95(int count, const std::function<double(const std::vector<int>&)>& statistic,
                      RandomStream random, int resamples) {
-  TT_CHECK(count >= 0 && resamples > 0);
-  std::vector<double> found;
-  std::vector<int> drawn(static_cast<std::size_t>(count));
-  for (int r = 0; r < resamples && count > 0; ++r) {
-    for (int& i : drawn) i = static_cast<int>(random.Index(static_cast<std::uint32_t>(count)));
-    const double value = statistic(drawn);
-    if (std::isfinite(value)) found.push_back(value);
-  }
-  if (found.empty()) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    return {kNone, kNone};
-  }
-  std::sort(found.begin(), found.end());
-  return {SortedQuantile(found, kTail), SortedQuantile(found, 1.0 - kTail)};
+  return BootstrapOf(count, count, statistic, random, resamples);
+}
+
+Interval RatioBootstrap95(const std::vector<RatioPart>& clusters, RandomStream random, int draws,
+                          int resamples) {
+  return BootstrapOf(
+      static_cast<int>(clusters.size()), draws,
+      [&](const std::vector<int>& drawn) {
+        RatioPart sum;
+        for (const int i : drawn) {
+          sum.numerator += clusters[i].numerator;
+          sum.denominator += clusters[i].denominator;
+        }
+        return sum.numerator / sum.denominator;
+      },
+      random, resamples);
 }
 
 Interval MeanInterval95(int n, double mean, double sd) {

@@ -36,6 +36,19 @@ struct Interval {
 Interval Bootstrap95(int count, const std::function<double(const std::vector<int>&)>& statistic,
                      RandomStream random, int resamples = 2000);
 
+/// What one cluster adds to a ratio of sums.
+struct RatioPart {
+  double numerator = 0.0;
+  double denominator = 0.0;
+};
+/// 95 % percentile interval of sum of numerators / sum of denominators by drawing `draws` whole
+/// clusters with replacement (Efron and Tibshirani 1993, 13.3). With `draws` = their number it is
+/// the interval of the ratio; with more of them it is the one that as many clusters of the same
+/// kind would give (Bickel, Goetze and van Zwet 1997, m of n). Of few clusters it is too narrow:
+/// they do not show how much clusters can differ. No cluster, or no draw: NaN.
+Interval RatioBootstrap95(const std::vector<RatioPart>& clusters, RandomStream random, int draws,
+                          int resamples = 2000);
+
 /// 95 % interval of the mean of `n` values with mean `mean` and standard deviation `sd` (of n - 1),
 /// by Student's t with n - 1 degrees of freedom. n < 2: NaN.
 Interval MeanInterval95(int n, double mean, double sd);

@@ -2,15 +2,20 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <utility>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/text.h"
+#include "models/base/zstd_frame.h"
 
 namespace tubetwin {
 namespace {
@@ -21,6 +26,15 @@ static_assert(std::endian::native == std::endian::little, "cloud files are littl
 
 constexpr std::uint64_t kMaxHeaderBytes = 64 * 1024;
 constexpr double kMaxMedianDistance_m = 20.0;
+constexpr const char* kPacked = ".zst";
+/// Four times the largest scan of a PhoXi XL with every field.
+constexpr std::uint64_t kMaxUnpackedBytes = 256 * 1024 * 1024;
+
+std::string Lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
 
 }  // namespace
 
@@ -34,9 +48,15 @@ CloudFile::CloudFile(const std::string& path) : path_(path) {
   if (!fs::is_regular_file(status)) {
     throw Error(ErrorKind::kBadData, path + ": is no regular file, so its size cannot be checked");
   }
+  if (CloudEnding(path).ends_with(kPacked)) {
+    std::string content = DecompressedFile(ReadFile(path), kMaxUnpackedBytes, path);
+    size_ = content.size();
+    in_ = std::make_unique<std::istringstream>(std::move(content), std::ios::binary);
+    return;
+  }
   size_ = fs::file_size(path, code);
-  in_.open(path, std::ios::binary);
-  if (code || !in_) {
+  in_ = std::make_unique<std::ifstream>(path, std::ios::binary);
+  if (code || !*in_) {
     throw Error(ErrorKind::kMissing, path + ": cannot be read: " + std::strerror(errno));
   }
 }
@@ -45,7 +65,7 @@ std::string CloudFile::HeaderLine() {
   ++line_;
   std::string line;
   while (true) {
-    const int c = in_.get();
+    const int c = in_->get();
     if (c == std::ifstream::traits_type::eof()) FailLine("the file ends inside its header");
     ++position_;
     if (c == '\n') break;
@@ -61,8 +81,8 @@ std::string CloudFile::HeaderLine() {
 }
 
 void CloudFile::ReadBytes(char* out, std::size_t count) {
-  in_.read(out, static_cast<std::streamsize>(count));
-  const auto got = static_cast<std::uint64_t>(in_.gcount());
+  in_->read(out, static_cast<std::streamsize>(count));
+  const auto got = static_cast<std::uint64_t>(in_->gcount());
   if (got != count) {
     FailByte(position_ + got, "the data ends, " + std::to_string(count - got) + " bytes missing");
   }
@@ -136,6 +156,13 @@ void FinishPoints(const CloudFile& file, OrganizedCloud& cloud) {
                     " m: the file is not in metres\n(a PLY in millimetres says so by the header "
                     "line 'comment units mm')");
   }
+}
+
+std::string CloudEnding(const std::string& path) {
+  const fs::path name(path);
+  std::string ending = name.extension().string();
+  if (Lower(ending) == kPacked) ending = name.stem().extension().string() + ending;
+  return Lower(ending);
 }
 
 void WriteRecords(const std::string& path, const std::string& header, std::size_t count,

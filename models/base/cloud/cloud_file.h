@@ -1,7 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
+#include <istream>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,11 +11,13 @@
 
 namespace tubetwin {
 
-/// What the PCD and PLY codecs share: a file read in pieces, never more than it holds. Internal to
+/// What the PCD and PLY codecs share: a file read in pieces, never more than it holds; one that
+/// ends in ".zst" is unpacked first, and sizes and places are those of its content. Internal to
 /// models/base. One thread.
 class CloudFile {
  public:
-  /// Throws Error(kMissing) when there is no such file, Error(kBadData) when it is no regular file.
+  /// Throws Error(kMissing) when there is no such file, Error(kBadData) when it is no regular file,
+  /// or a damaged or too large .zst.
   explicit CloudFile(const std::string& path);
 
   const std::string& path() const { return path_; }
@@ -36,7 +39,7 @@ class CloudFile {
 
  private:
   std::string path_;
-  std::ifstream in_;
+  std::unique_ptr<std::istream> in_;
   std::uint64_t size_ = 0;
   std::uint64_t position_ = 0;
   int line_ = 0;
@@ -55,6 +58,9 @@ double HeaderNumber(const CloudFile& file, const std::string& field, std::string
 /// cloud, as vendors mark them) and refuses a cloud whose median distance from its origin is over
 /// 20 m: lengths in millimetres are never guessed. Throws Error(kBadData).
 void FinishPoints(const CloudFile& file, OrganizedCloud& cloud);
+
+/// A name's ending in small letters, with the one below it when it is packed: ".pcd", ".ply.zst".
+std::string CloudEnding(const std::string& path);
 
 /// Writes `header`, then `count` records of `record_size` bytes that `fill(index, out)` makes.
 void WriteRecords(const std::string& path, const std::string& header, std::size_t count,

@@ -354,13 +354,11 @@ OrganizedCloud ReadPly(const std::string& path) {
 }
 
 OrganizedCloud ReadCloud(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending == ".pcd") return ReadPcd(path);
-  if (ending == ".ply") return ReadPly(path);
-  throw Error(ErrorKind::kBadData,
-              path + ": the ending is '" + ending + "', allowed are .pcd, .ply");
+  const std::string ending = CloudEnding(path);
+  if (ending == ".pcd" || ending == ".pcd.zst") return ReadPcd(path);
+  if (ending == ".ply" || ending == ".ply.zst") return ReadPly(path);
+  throw Error(ErrorKind::kBadData, path + ": the ending is '" + ending +
+                                       "', allowed are .pcd, .ply, .pcd.zst, .ply.zst");
 }
 
 }  // namespace tubetwin

@@ -6,7 +6,7 @@
 #   JOBS      shards at a time on each machine (default: as many as cores)
 #   HOSTS     "alice,bob,4/carol": what parallel's --sshlogin takes; default this machine alone. The hosts have
 #             the same program, and the same paths by a shared file system.
-#   TUBETWIN  the program, when it is not on PATH
+#   TUBETWIN  the program, when `tubetwin` is not on PATH: TUBETWIN=build/bin/tubetwin after ./dev build
 # Stop it and start it again with the same words at any time: finished shards are not run again. Shards that end
 # with 75 ("not finished, try again") are run again here, up to five times; any other failure ends it.
 set -euo pipefail
@@ -15,7 +15,10 @@ set -euo pipefail
 command -v parallel >/dev/null || { echo "parallel.sh: GNU parallel is missing (apt-get install parallel)" >&2; exit 69; }
 campaign=$(realpath -- "$1") out=$(realpath -m -- "$2") shards=$3
 shift 3
-program=$(command -v -- "${TUBETWIN:-tubetwin}") || { echo "parallel.sh: there is no ${TUBETWIN:-tubetwin}" >&2; exit 69; }
+program=$(command -v -- "${TUBETWIN:-tubetwin}") || {
+  echo "parallel.sh: there is no program ${TUBETWIN:-tubetwin}; TUBETWIN=PATH names it (build/bin/tubetwin after ./dev build)" >&2
+  exit 69
+}
 program=$(realpath -- "$program")
 mkdir -p "$out"
 log=$out/parallel.log

@@ -155,6 +155,7 @@ Json ToJson(const AttemptRecord& attempt, const RowPlace& place) {
   row["reason"] = attempt.reason;
   row["success"] = attempt.success ? Json(*attempt.success) : Json(nullptr);
   row["sim_s"] = SimTimeJson(attempt.sim_s);
+  if (attempt.phases_s) row["phases_s"] = ToJson(*attempt.phases_s);
   row["truth"] = TruthJson(attempt.truth);
   return row;
 }
@@ -191,6 +192,7 @@ AttemptRecord AttemptFromJson(const JsonView& row) {
     attempt.sim_s->weigh = times->Field("weigh").AsNumber();
     attempt.sim_s->settle = times->Field("settle").AsNumber();
   }
+  if (const auto phases_s = row.Optional("phases_s")) attempt.phases_s = PhasesFromJson(*phases_s);
   if (const auto truth = row.Optional("truth")) attempt.truth = TruthFromJson(*truth);
   return attempt;
 }

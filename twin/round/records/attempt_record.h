@@ -61,16 +61,23 @@ struct AttemptRecord {
   std::string reason;                               ///< Of the outcome, for people.
   std::optional<bool> success;  ///< By truth: exactly one new tube on the tray, none outside.
   std::optional<AttemptReport::SimTime> sim_s;  ///< Nothing: the round crashed.
-  std::optional<AttemptTruth> truth;            ///< Nothing: a cell without truth, or crashed.
+  /// The same time by what it was for; nothing: it crashed, or an earlier version wrote the row.
+  std::optional<AttemptReport::Phases> phases_s;
+  std::optional<AttemptTruth> truth;  ///< Nothing: a cell without truth, or crashed.
 };
 
 /// A row of picks.jsonl, and the record of one; the row's place is read by whoever looks for it.
-/// Rows of earlier versions, which lack prediction or nudges, are read too. Throws Error(kBadData).
+/// Rows of earlier versions, which lack prediction, nudges or phases, are read too. Throws
+/// Error(kBadData).
 Json ToJson(const AttemptRecord& attempt, const RowPlace& place);
 AttemptRecord AttemptFromJson(const JsonView& row);
 
+inline constexpr int kAfterLastAttempt = 0;
+
 /// What an attempt took on the clocks of the machine: a row of timings.jsonl.
 struct AttemptTiming {
+  /// As the record's; kAfterLastAttempt: of what came after the last, the look that found nothing
+  /// to do.
   int attempt = 1;
   std::optional<AttemptReport::ComputeTime> compute_s;  ///< Nothing: the round crashed.
   double wall_s = 0.0;

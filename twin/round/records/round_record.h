@@ -17,7 +17,9 @@ struct RoundRecord {
   std::int64_t seed = 0;
   RoundSummary summary;
   std::vector<AttemptRecord> attempts;
-  std::vector<AttemptTiming> timings;  ///< One for each attempt, or none where nobody kept them.
+  /// One for each attempt, then one of what came after the last; or none where nobody kept them.
+  /// Earlier versions kept none of what came after.
+  std::vector<AttemptTiming> timings;
 };
 
 /// "variant 0 round 5", as messages name it.

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+
+#include "twin/report/sections.h"
+
+namespace tubetwin {
+
+// What a customer reads first: a page of paper with what was run and how many parts an hour, and
+// the sections that say where the time goes, what fails and what would help. HTML; of several
+// variants each is told on its own, never their mix.
+
+/// Title, parts an hour with definition and interval, pictures, facts, assumptions and what is not
+/// modelled. `cards`: rates that stand beside.
+std::string FrontPage(const ReportInput& input, const std::string& cards);
+
+/// The median pick as a Gantt chart, with the spread of every phase over all picks.
+std::string CycleTime(const ReportInput& input);
+
+/// Every failure class with rate, Wilson's interval and its share of the time.
+std::string FailureModes(const ReportInput& input);
+
+/// How wide the interval is now and would be with twice and four times the rounds.
+std::string MoreRounds(const ReportInput& input);
+
+/// What would raise the rate most, by the measured times.
+std::string Levers(const ReportInput& input);
+
+}  // namespace tubetwin
