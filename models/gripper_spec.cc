@@ -43,6 +43,8 @@ struct GripperEntry {
   void Visit(ConfigVisitor& v) {
     const Range length{1e-3, 1.0}, mass{1e-3, 50.0};
     v.Field("name", "for messages and reports", spec.name);
+    v.Choice("controller", "what drivers may speak to: Robotiq's registers, or none",
+             spec.controller, {"none", "robotiq"});
     v.Field("stroke_m", "largest opening between the pads", spec.stroke_m, length);
     v.Field("force_N", "least and largest force of a pad", force_N, {0.1, 10000});
     v.Field("speed_m_s", "least and largest speed of the opening", speed_m_s, {1e-4, 10});

@@ -14,8 +14,9 @@ namespace tubetwin {
 /// grasped tube, y closing, z out of the tool).
 struct GripperSpec {
   std::string name;
-  double stroke_m = 0.0;     ///< Largest opening between the pads.
-  double min_force_N = 0.0;  ///< Per pad.
+  std::string controller = "none";  ///< Whose registers it has: "robotiq", or "none".
+  double stroke_m = 0.0;            ///< Largest opening between the pads.
+  double min_force_N = 0.0;         ///< Per pad.
   double max_force_N = 0.0;
   double min_speed_m_s = 0.0;  ///< Of the opening.
   double max_speed_m_s = 0.0;

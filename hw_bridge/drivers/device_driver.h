@@ -22,7 +22,6 @@ struct DriverContext {
   /// False: the device is only read. No byte goes to an arm's motion port, fingers stay as they
   /// are.
   bool may_move = false;
-  std::string folder;  ///< What relative paths in the configuration refer to.
   /// For scanners: X_NS as the pipeline believes it now. Asked for on the pick cycle's thread.
   std::function<RigidTransform()> believed_X_NS;
 };

@@ -42,7 +42,8 @@ struct ArmModel {
     Vector3 centre_of_mass_m = Vector3::Zero();
     Matrix3 inertia_kgm2 = Matrix3::Zero();  ///< About the centre of mass, link axes.
   };
-  std::string name;     ///< Of the product: "HC10".
+  std::string name;                 ///< Of the product: "HC10".
+  std::string controller = "none";  ///< Whose protocol it speaks: "motoros", or "none".
   std::string inverse;  ///< How its inverse kinematics is computed: one of InverseNames().
   std::array<Joint, kNumJoints> joints;
   std::array<Link, kNumJoints + 1> links;

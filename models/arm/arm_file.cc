@@ -66,7 +66,7 @@ struct ShapeLink {
 };
 
 struct ArmEntry {
-  std::string name, inverse;
+  std::string name, controller = "none", inverse;
   double acceleration_time_s = kUnset;
   double jerk_time_s = kUnset;
   std::array<double, 3> flange_origin_m = kUnset3;
@@ -78,6 +78,8 @@ struct ArmEntry {
   ArmEntry() : working_weight({1, 1, 1, 1, 1, 0}) { working_within_deg.fill(180.0); }
   void Visit(ConfigVisitor& v) {
     v.Field("name", "Of the arm.", name);
+    v.Choice("controller", "What drivers may speak to: a Yaskawa controller with MotoROS, or none.",
+             controller, {"none", "motoros"});
     v.Choice("inverse", "How its inverse kinematics is computed; numeric solves any geometry.",
              inverse, InverseNames());
     v.Field("acceleration_time_s", "From rest to full speed.", acceleration_time_s,
@@ -261,6 +263,7 @@ ArmModel ReadArm(const ModelFile& file) {
 
   ArmModel arm;
   arm.name = entry.name;
+  arm.controller = entry.controller;
   arm.inverse = entry.inverse;
   for (int i = 0; i < kNumJoints; ++i) arm.joints[i] = ReadJoint(joints[i], i + 1, entry);
   for (int i = 0; i <= kNumJoints; ++i) arm.links[i] = ReadLink(links[i], i);

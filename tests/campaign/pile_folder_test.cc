@@ -31,8 +31,8 @@ TEST_CASE("rounds of a campaign start from the piles of a folder, one each, by n
   };
   const Campaign campaign = load("2");
   CHECK(campaign.variants[0].tubes == 1);
-  CHECK(PileFilesOf(campaign.variants[0].scenario, campaign.folder) ==
-        std::vector<std::string>{"piles/a.json", "piles/b.json"});
+  CHECK(PileFilesOf(campaign.variants[0].scenario) ==
+        std::vector<std::string>{folder / "piles/a.json", folder / "piles/b.json"});
   CHECK_THROWS_WITH(load("3"), Contains("holds 2 piles (*.json) for 3 rounds"));
   const Json before = IdentityOf(campaign, "1").document;
   made.pile.seed = 2;

@@ -75,7 +75,7 @@ TEST_CASE("A driver of one's own serves its role in a cell of which the rest is 
                                    "driver = 'constant'\n"
                                    "constant.force_N = -7.5\n");
   scenario.pile.count = 1;
-  LiveCell live(scenario, ".", ".", CellPurpose::kLook, {1});
+  LiveCell live(scenario, CellPurpose::kLook, {1});
   Cell& cell = live.cell();
   CHECK(cell.wrist.Read().wrench_K.force_N.z() == -7.5);
   cell.clock.AdvanceTo(cell.clock.Now() + FromSeconds(0.01));

@@ -24,7 +24,7 @@ namespace {
 struct Bench {
   explicit Bench(const std::string& listen = "127.0.0.1", bool gige = false) {
     scenario.pile.count = 1;
-    const Pile pile = ScenarioPile(scenario, ".");
+    const Pile pile = ScenarioPile(scenario);
     twin.emplace(pile, ScenarioTwin(scenario, ScenarioPhysics(scenario, pile.part), {1}));
     cell.emplace(*twin, scenario, EmulationPlaces{listen, true, folder.path(), gige});
   }
@@ -124,8 +124,8 @@ TEST_CASE("GigE Vision is served when it is asked for, and not otherwise", "[uni
   CHECK(chosen.drivers.Get<PhotoneoDriver>().config.path.empty());
   CHECK_NOTHROW(bench.cell->Reaching().cell.ValidateOrThrow());
   chosen.drivers.Get<PhotoneoDriver>().config.timeout_s = 25.0;
-  DriverContext context = ScenarioContext(bench.scenario, PaperCell(), bench.twin->cell().clock,
-                                          CellPurpose::kLook, "");
+  DriverContext context =
+      ScenarioContext(bench.scenario, PaperCell(), bench.twin->cell().clock, CellPurpose::kLook);
   context.believed_X_NS = [] { return RigidTransform::Identity(); };
   const auto driver = chosen.Connect(context);
   REQUIRE(driver->Trigger().accepted());

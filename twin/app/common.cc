@@ -38,9 +38,9 @@ void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc
   verb.add_flag("-q,--quiet", common.quiet, "Say nothing but errors");
 }
 
-void RequireSoundCell(const Scenario& scenario, const std::string& folder, const Common& common) {
-  const std::vector<Finding> cell = CheckScenario(scenario, folder);
-  const std::vector<Finding> part = CheckScenarioPart(scenario, folder);
+void RequireSoundCell(const Scenario& scenario, const Common& common) {
+  const std::vector<Finding> cell = CheckScenario(scenario);
+  const std::vector<Finding> part = CheckScenarioPart(scenario);
   for (const auto* findings : {&cell, &part}) {
     for (const Finding& finding : *findings) {
       if (finding.verdict != Finding::Verdict::kDoubtful) continue;
@@ -60,11 +60,6 @@ Scenario LoadScenario(const std::vector<std::string>& files, const Common& commo
   Scenario scenario = ReadScenario(source, profile);
   if (common.seed) scenario.seed = *common.seed;
   return scenario;
-}
-
-std::string FolderOf(const std::string& file) {
-  const std::filesystem::path parent = std::filesystem::path(file).parent_path();
-  return parent.empty() ? "." : parent.string();
 }
 
 std::function<bool()> StopOnSignals() {

@@ -42,9 +42,6 @@ void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc
 Scenario LoadScenario(const std::vector<std::string>& files, const Common& common,
                       const std::string& profile = "");
 
-/// The folder that relative names in a file refer to: its own, "." for a bare or empty name.
-std::string FolderOf(const std::string& file);
-
 /// From here on SIGTERM and SIGINT only ask for an end; the function tells whether they have.
 std::function<bool()> StopOnSignals();
 
@@ -53,7 +50,7 @@ void Say(const Common& common, const std::string& line);
 
 /// Checks the scenario's cell (CheckScenario): doubts are said, an impossible one throws
 /// Error(kConfig).
-void RequireSoundCell(const Scenario& scenario, const std::string& folder, const Common& common);
+void RequireSoundCell(const Scenario& scenario, const Common& common);
 
 /// One-line progress on a terminal's stderr, overwritten in place; nothing when stderr is no
 /// terminal.

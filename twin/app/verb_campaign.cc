@@ -63,7 +63,7 @@ int RunVerb(const CampaignOptions& given, const Common& common) {
   if (!given.limit_time.empty()) options.limit_s = ParseDuration(given.limit_time);
   const Campaign campaign = LoadCampaign(given.file, common.overrides, common.seed);
   for (const CampaignVariant& variant : campaign.variants) {
-    RequireSoundCell(variant.scenario, campaign.folder, common);
+    RequireSoundCell(variant.scenario, common);
   }
   options.out_folder = common.out;
   options.jobs = given.jobs;

@@ -16,9 +16,8 @@ namespace {
 /// The table of what was judged on stdout; what is wrong ends with its exit code.
 int CheckConfig(const std::vector<std::string>& files, const Common& common) {
   const Scenario scenario = LoadScenario(files, common);
-  const std::string folder = files.empty() ? "." : FolderOf(files.front());
-  const std::vector<Finding> cell = CheckScenario(scenario, folder);
-  const std::vector<Finding> part = CheckScenarioPart(scenario, folder);
+  const std::vector<Finding> cell = CheckScenario(scenario);
+  const std::vector<Finding> part = CheckScenarioPart(scenario);
   std::vector<Finding> findings = cell;
   findings.insert(findings.end(), part.begin(), part.end());
   if (common.json) {

@@ -89,12 +89,12 @@ std::string Said(const WrenchSample& sample) {
 }
 
 /// Every device of the scenario's cell, read without moving anything.
-std::vector<Examined> ExamineCell(const Scenario& scenario, const std::string& folder) {
+std::vector<Examined> ExamineCell(const Scenario& scenario) {
   scenario.cell.ValidateOrThrow();
   const CellConfig& cell = scenario.cell;
   const WallClock clock(scenario.rate);
   const CellModel model = ScenarioModel(scenario);
-  DriverContext context = ScenarioContext(scenario, model, clock, CellPurpose::kLook, folder);
+  DriverContext context = ScenarioContext(scenario, model, clock, CellPurpose::kLook);
   context.believed_X_NS = [] { return RigidTransform::Identity(); };
   std::vector<Examined> out;
   out.push_back(Look("arm", cell.arm, context, [&](const Arm& arm) {
@@ -116,11 +116,11 @@ int Doctor(const std::string& cell_file, const Common& common) {
     findings = Examine();
   } else {
     const Scenario scenario = LoadScenario({cell_file}, common);
-    const std::vector<Finding> judged = CheckScenario(scenario, FolderOf(cell_file));
+    const std::vector<Finding> judged = CheckScenario(scenario);
     for (const Finding& finding : judged) findings.push_back(AsExamined(finding));
     impossible = WorstOf(judged) == Finding::Verdict::kImpossible;
     if (!impossible) {
-      for (Examined& device : ExamineCell(scenario, FolderOf(cell_file))) {
+      for (Examined& device : ExamineCell(scenario)) {
         findings.push_back(std::move(device));
       }
     }

@@ -21,7 +21,6 @@ int RunEmulate(const EmulateChoice& choice, const Common& common) {
   Scenario scenario = LoadScenario(files, common);
   if (choice.rate > 0.0) scenario.rate = choice.rate;
   EmulateOptions options;
-  options.scenario_folder = FolderOf(choice.scenario);
   options.out_folder = common.out;
   options.listen = choice.listen;
   options.any_ports = choice.any_ports;

@@ -39,14 +39,14 @@ Seen ReadScene(const CloudInput& input, const Scenario& scenario) {
     throw Error(ErrorKind::kUsage, file + ": names no part; give --part");
   }
   const auto bin = document.Optional("bin");
-  seen.bin = bin ? BinFromJson(*bin) : ScenarioBin(scenario, std::nullopt, ".");
+  seen.bin = bin ? BinFromJson(*bin) : ScenarioBin(scenario, std::nullopt);
   if (!input.bin.empty()) seen.bin.size_m = ParseBinSize(input.bin);
   return seen;
 }
 
 Seen PerceiveScene(const CloudInput& input, const Scenario& scenario, const Common& common) {
   if (input.part.empty()) throw Error(ErrorKind::kUsage, "plan of clouds: --part is needed");
-  Seen seen{{}, LoadPart(input.part), ScenarioBin(scenario, std::nullopt, "."), {}};
+  Seen seen{{}, LoadPart(input.part), ScenarioBin(scenario, std::nullopt), {}};
   if (!input.bin.empty()) seen.bin.size_m = ParseBinSize(input.bin);
   const std::vector<OrganizedCloud> views = ReadViews(input, seen.bin, common);
   seen.scene = Perceive(views, seen.part, seen.bin, scenario.perception, common.parallelism());

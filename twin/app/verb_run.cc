@@ -94,10 +94,8 @@ RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOp
   if (scenario.cell.IsTwin() && !run.dry) return RunRound(scenario, options);
   scenario.cell.ValidateOrThrow();
   options.acknowledge = AskOperator;
-  const std::string cell_folder = FolderOf(run.cell.empty() ? run.scenario : run.cell);
   if (scenario.cell.arm.IsReplay()) {
-    const std::string path =
-        (fs::path(cell_folder) / scenario.cell.recording).lexically_normal().string();
+    const std::string& path = scenario.cell.recording;
     ReplayCell replay{CellRecording(path)};
     replay.cell().safety = ScenarioSafety(scenario);
     options.replay = &replay;
@@ -114,8 +112,7 @@ RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOp
       fail(over.what());
     }
   }
-  LiveCell live(scenario, options.scenario_folder, cell_folder,
-                run.dry ? CellPurpose::kLook : CellPurpose::kRun, options.parallelism);
+  LiveCell live(scenario, run.dry ? CellPurpose::kLook : CellPurpose::kRun, options.parallelism);
   GiveWay();  // Perception and planning, to the threads that listen to the devices.
   if (!run.dry) {
     RoundResult result = RunCellRound(live.cell(), scenario, options);
@@ -127,13 +124,12 @@ RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOp
   return std::move(dry.round);
 }
 
-Scenario RunScenario(const RunOptions& run, const Common& common, std::string& folder) {
+Scenario RunScenario(const RunOptions& run, const Common& common) {
   std::vector<std::string> files;
   if (!run.scenario.empty()) files.push_back(run.scenario);
   if (!run.cell.empty()) files.push_back(run.cell);
   Scenario scenario = LoadScenario(files, common, run.profile);
-  folder = FolderOf(run.scenario);
-  if (!run.pile.empty()) scenario.pile.file = fs::absolute(run.pile).string();
+  if (!run.pile.empty()) scenario.pile.file = run.pile;
   if (!run.part.empty()) scenario.pile.part = run.part;
   if (!run.bin.empty()) {
     const auto size = ParseBinSize(run.bin);
@@ -146,8 +142,8 @@ int Run(const RunOptions& run, const Common& common) {
   std::vector<Requirement> requirements;
   for (const std::string& text : run.require) requirements.push_back(ParseRequirement(text));
   RoundOptions options;
-  const Scenario scenario = RunScenario(run, common, options.scenario_folder);
-  RequireSoundCell(scenario, options.scenario_folder, common);
+  const Scenario scenario = RunScenario(run, common);
+  RequireSoundCell(scenario, common);
   options.out_folder = common.out;
   options.parallelism = common.parallelism();
   options.video = run.video;

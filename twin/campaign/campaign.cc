@@ -40,14 +40,14 @@ std::string VariantName(const std::string& given, bool alone, const ConfigSource
 }
 
 /// Reads what rounds will read, so that a missing part or pile is told before the first.
-void ReadInputs(CampaignVariant& variant, const std::string& folder, int rounds) {
+void ReadInputs(CampaignVariant& variant, int rounds) {
   Scenario& scenario = variant.scenario;
   RequireTwin(scenario, "a campaign");
-  ScenarioVisuals(scenario, folder);
+  ScenarioVisuals(scenario);
   if (!scenario.pile.file.empty()) {
     Scenario first = scenario;
-    if (fs::is_directory(fs::path(folder) / scenario.pile.file)) {
-      const std::vector<std::string> files = PileFilesOf(scenario, folder);
+    if (fs::is_directory(scenario.pile.file)) {
+      const std::vector<std::string> files = PileFilesOf(scenario);
       if (static_cast<int>(files.size()) < rounds) {
         throw Error(ErrorKind::kMissing, scenario.pile.file + ": holds " +
                                              std::to_string(files.size()) + " piles (*.json) for " +
@@ -56,14 +56,14 @@ void ReadInputs(CampaignVariant& variant, const std::string& folder, int rounds)
       }
       first.pile.file = files.front();
     }
-    const Pile pile = AskedPile(first, folder);
+    const Pile pile = AskedPile(first);
     variant.part = pile.part;
     variant.tubes = static_cast<int>(pile.tubes.size());
     return;
   }
   variant.part = LoadPart(ScenarioPartName(scenario));
   variant.tubes = scenario.pile.count;
-  ScenarioBin(scenario, std::nullopt, folder);
+  ScenarioBin(scenario, std::nullopt);
 }
 
 void AddVariants(ConfigSource table, const std::string& where,
@@ -87,7 +87,7 @@ void AddVariants(ConfigSource table, const std::string& where,
                       ": set: seed: rounds of all variants share the seeds that come from the "
                       "campaign's; give it at the top");
     }
-    ReadInputs(variant, campaign.folder, campaign.rounds);
+    ReadInputs(variant, campaign.rounds);
     variant.name = VariantName(left.name, grid.size() == 1, point, variant);
     campaign.variants.push_back(std::move(variant));
   }
@@ -105,25 +105,50 @@ std::vector<ConfigSource> TakeVariants(ConfigSource& source, const std::string& 
   return variants;
 }
 
-Json VariantJson(const CampaignVariant& variant, int index, const std::string& folder) {
-  Scenario scenario =
-      variant.scenario;  // Visiting is non-const: one list serves reading and writing.
+/// Files by their names alone: shards may run in other folders. What is in them is in the
+/// fingerprints and in what follows from the keys.
+void NameFilesOnly(Scenario& scenario) {
+  for (std::string* file : {&scenario.pile.file, &scenario.bin.mesh}) {
+    *file = fs::path(*file).filename().string();
+  }
+  for (std::string* file : {&scenario.pile.part, &scenario.part.name, &scenario.cell.model}) {
+    if (file->ends_with(".toml")) *file = fs::path(*file).filename().string();
+  }
+  for (std::string& file : scenario.cell.arm.visual_meshes) {
+    file = fs::path(file).filename().string();
+  }
+}
+
+/// Of a user's own cell files.
+std::string FingerprintOf(const CellFiles& files) {
+  std::string texts;
+  for (const ModelFile* file :
+       {&files.cell, &files.arm, &files.gripper, &files.wrist, &files.scanner}) {
+    texts += file->text;
+  }
+  return Fingerprint(texts);
+}
+
+Json VariantJson(const CampaignVariant& variant, int index) {
+  const Scenario& scenario = variant.scenario;
+  Scenario named = scenario;
+  NameFilesOnly(named);
   Json out;
   out["variant"] = index;
-  out["config"] =
-      Json::parse(WriteConfigJson([&scenario](ConfigVisitor& v) { scenario.Visit(v); }));
+  out["config"] = Json::parse(WriteConfigJson([&named](ConfigVisitor& v) { named.Visit(v); }));
   out["config"].erase("seed");  // Each round has its own.
   if (!scenario.pile.file.empty()) {
-    std::vector<std::string> files = PileFilesOf(scenario, folder);
+    std::vector<std::string> files = PileFilesOf(scenario);
     if (files.empty()) files = {scenario.pile.file};
     std::string content;
-    for (const std::string& file : files) content += ReadFile((fs::path(folder) / file).string());
+    for (const std::string& file : files) content += ReadFile(file);
     out["pile_fingerprint"] = Fingerprint(content);
   }
   if (!scenario.bin.mesh.empty()) {
-    const fs::path file = fs::path(folder) / scenario.bin.mesh;
-    out["bin_mesh_fingerprint"] = Fingerprint(ReadFile(file.string()));
+    out["bin_mesh_fingerprint"] = Fingerprint(ReadFile(scenario.bin.mesh));
   }
+  const CellFiles cell = LoadCellModel(scenario.cell.model).files;
+  if (!cell.cell.shipped) out["cell_fingerprint"] = FingerprintOf(cell);
   // What follows from the keys comes after them: a difference names the key.
   out["part"] = PartToJson(variant.part);
   out["tubes"] = variant.tubes;
@@ -159,8 +184,6 @@ Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& o
   }
   std::vector<ConfigSource> tables = TakeVariants(source, path);
   Campaign campaign;
-  const fs::path parent = fs::path(path).parent_path();
-  if (!parent.empty()) campaign.folder = parent.string();
   CampaignKeys keys{campaign};
   source.ReadInto(keys);
   if (seed) campaign.seed = *seed;
@@ -203,8 +226,7 @@ CampaignIdentity IdentityOf(const Campaign& campaign, const std::string& program
   out["rounds"] = campaign.rounds;
   out["variants"] = Json::array();
   for (std::size_t i = 0; i < campaign.variants.size(); ++i) {
-    out["variants"].push_back(
-        VariantJson(campaign.variants[i], static_cast<int>(i), campaign.folder));
+    out["variants"].push_back(VariantJson(campaign.variants[i], static_cast<int>(i)));
   }
   return IdentityFromJson(std::move(out), "campaign.json");
 }

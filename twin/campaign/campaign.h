@@ -33,7 +33,6 @@ struct Campaign {
   int rounds = 20;
   KeepConfig keep;
   std::vector<CampaignVariant> variants;
-  std::string folder = ".";  ///< What relative names of pile files refer to.
 };
 
 /// Reads a campaign file: `seed`, `rounds`, `[keep]`, and `[[variant]]` tables with `name`, `part`,

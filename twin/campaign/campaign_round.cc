@@ -87,7 +87,7 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
                              const CampaignRoundOptions& options) {
   Scenario scenario = campaign.variants.at(static_cast<std::size_t>(task.variant)).scenario;
   scenario.seed = task.seed;
-  const std::vector<std::string> piles = PileFilesOf(scenario, campaign.folder);
+  const std::vector<std::string> piles = PileFilesOf(scenario);
   if (!piles.empty()) scenario.pile.file = piles.at(static_cast<std::size_t>(task.round));
   const bool sampled = IsSampled(campaign, task.round);
   const std::string name = RoundFolderName(task.variant, task.round);
@@ -98,7 +98,6 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
 
   RoundOptions round;
   round.out_folder = work.string();
-  round.scenario_folder = campaign.folder;
   round.parallelism = options.parallelism;
   round.program_version = options.program_version;
   round.write_report = options.write_report;

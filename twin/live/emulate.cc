@@ -85,17 +85,30 @@ bool Ended(const EmulateOptions& options, const EmulatedCell& cell) {
   return options.stop_requested && options.stop_requested();
 }
 
+/// What is emulated are the controllers of these devices.
+void RequireSpoken(const CellModel& model) {
+  const auto refuse = [&](const char* role, const std::string& device, const char* controller) {
+    throw Error(ErrorKind::kConfig, "emulate: the cell model's " + std::string(role) + " is a " +
+                                        device +
+                                        ", whose controller is not emulated; allowed are " + role +
+                                        "s whose file says controller = \"" + controller + "\"");
+  };
+  if (model.arm.controller != "motoros") refuse("arm", model.arm.name, "motoros");
+  if (model.gripper.controller != "robotiq") refuse("gripper", model.gripper.name, "robotiq");
+}
+
 }  // namespace
 
 EmulateResult Emulate(const Scenario& scenario, const EmulateOptions& options) {
   FaultScript script(options.faults_file.empty() ? std::vector<ScriptedFault>()
                                                  : ReadFaultScript(options.faults_file));
+  RequireSpoken(ScenarioModel(scenario));
   const fs::path out = fs::absolute(options.out_folder);
   MakeFolder(out.string());
   // Whoever waits for it must not find that of an earlier emulation.
   fs::remove(out / "cell.toml");
   fs::remove(out / "world.json");
-  const Pile asked = ScenarioPile(scenario, options.scenario_folder);
+  const Pile asked = ScenarioPile(scenario);
   const RoundPhysics physics = ScenarioPhysics(scenario, asked.part);
   const Pile pile = StartPile(scenario, asked, physics);
   SavePile(pile, (out / "start.pile.json").string());

@@ -10,7 +10,6 @@ namespace tubetwin {
 
 struct EmulateOptions {
   std::string out_folder;
-  std::string scenario_folder = ".";  ///< What relative file names in the scenario refer to.
   std::string listen = "127.0.0.1";
   bool any_ports = false;   ///< Free ports instead of those of [cell.*].
   bool gige = false;        ///< The scanner on GigE Vision instead of a folder of scans.

@@ -50,26 +50,24 @@ void RequireArmed(const Scenario& scenario) {
 }
 
 DriverContext ScenarioContext(const Scenario& scenario, const CellModel& model,
-                              const CellClock& clock, CellPurpose purpose,
-                              const std::string& folder) {
-  return {model, clock, scenario.rate, purpose == CellPurpose::kRun, folder, {}};
+                              const CellClock& clock, CellPurpose purpose) {
+  return {model, clock, scenario.rate, purpose == CellPurpose::kRun, {}};
 }
 
 struct LiveCell::Impl {
-  Impl(const Scenario& scenario, const std::string& scenario_folder, const std::string& cell_folder,
-       CellPurpose purpose, Parallelism parallelism)
+  Impl(const Scenario& scenario, CellPurpose purpose, Parallelism parallelism)
       : devices(scenario.cell), clock(scenario.rate), model(ScenarioModel(scenario)) {
     Bin bin;
     if (scenario.cell.HasTwin()) {
-      const Pile asked = ScenarioPile(scenario, scenario_folder);
+      const Pile asked = ScenarioPile(scenario);
       const RoundPhysics physics = ScenarioPhysics(scenario, asked.part);
       const Pile pile = StartPile(scenario, asked, physics);
       bin = pile.bin;
       twin.emplace(pile, ScenarioTwin(scenario, physics, parallelism));
     } else {
-      bin = ScenarioBin(scenario, std::nullopt, cell_folder);
+      bin = ScenarioBin(scenario, std::nullopt);
     }
-    DriverContext context = ScenarioContext(scenario, model, clock, purpose, cell_folder);
+    DriverContext context = ScenarioContext(scenario, model, clock, purpose);
     if (devices.wrist.IsDevice()) wrist = devices.wrist.Connect(context);
     if (devices.arm.IsDevice()) arm = devices.arm.Connect(context);
     Arm& the_arm = arm ? *arm : twin->cell().arm;
@@ -97,11 +95,10 @@ struct LiveCell::Impl {
   std::optional<Cell> cell;
 };
 
-LiveCell::LiveCell(const Scenario& scenario, const std::string& scenario_folder,
-                   const std::string& cell_folder, CellPurpose purpose, Parallelism parallelism) {
+LiveCell::LiveCell(const Scenario& scenario, CellPurpose purpose, Parallelism parallelism) {
   scenario.cell.ValidateOrThrow();
   if (purpose == CellPurpose::kRun) RequireArmed(scenario);
-  impl_ = std::make_unique<Impl>(scenario, scenario_folder, cell_folder, purpose, parallelism);
+  impl_ = std::make_unique<Impl>(scenario, purpose, parallelism);
 }
 LiveCell::~LiveCell() = default;
 Cell& LiveCell::cell() { return *impl_->cell; }

@@ -15,11 +15,10 @@ enum class CellPurpose {
   kLook,  ///< Nothing moves: the arm gets no byte on its motion port, the gripper stays as it is.
 };
 
-/// What the drivers of the scenario's cell are connected with. `folder`: of relative paths in the
-/// cell file. For a scanner believed_X_NS is to be filled in. References are kept.
+/// What the drivers of the scenario's cell are connected with. For a scanner believed_X_NS is to be
+/// filled in. References are kept.
 DriverContext ScenarioContext(const Scenario& scenario, const CellModel& model,
-                              const CellClock& clock, CellPurpose purpose,
-                              const std::string& folder);
+                              const CellClock& clock, CellPurpose purpose);
 
 /// Throws Error(kConfig, exit 78) unless the scenario's arm may move: it is the twin's or a
 /// recording's, or armed.
@@ -29,11 +28,9 @@ void RequireArmed(const Scenario& scenario);
 /// scenario's pile for the others, in time with the wall. Its clock runs `rate` times as fast.
 class LiveCell {
  public:
-  /// `scenario_folder`, `cell_folder`: of relative names in the scenario and in the cell file.
   /// Throws as the drivers' Connect, RequireArmed (for kRun), ScenarioPile and TwinCell do.
   /// Precondition: no device is "replay".
-  LiveCell(const Scenario& scenario, const std::string& scenario_folder,
-           const std::string& cell_folder, CellPurpose purpose, Parallelism parallelism);
+  LiveCell(const Scenario& scenario, CellPurpose purpose, Parallelism parallelism);
   ~LiveCell();
   Cell& cell();
   /// What came over the links so far and what was lost, as the drivers count it: {gripper:

@@ -18,12 +18,10 @@ bool IsFile(const std::string& name_or_file) { return name_or_file.ends_with(kTo
 
 class Archive {
  public:
-  explicit Archive(std::string folder) : folder_(std::move(folder)) {}
-
   void Mesh(std::string& file, const std::string& name) {
     if (file.empty()) return;
     const std::string copy = name + fs::path(file).extension().string();
-    files.push_back({copy, ReadFile((fs::path(folder_) / file).string())});
+    files.push_back({copy, ReadFile(file)});
     file = copy;
   }
   void Part(std::string& name_or_file) {
@@ -74,14 +72,12 @@ class Archive {
     TT_CHECK(done);
     return out;
   }
-
-  std::string folder_;
 };
 
 }  // namespace
 
-std::vector<ArchivedFile> ArchiveInputs(Scenario& scenario, const std::string& folder) {
-  Archive archive(folder);
+std::vector<ArchivedFile> ArchiveInputs(Scenario& scenario) {
+  Archive archive;
   archive.Mesh(scenario.bin.mesh, "given.bin");
   for (std::size_t i = 0; i < scenario.cell.arm.visual_meshes.size(); ++i) {
     archive.Mesh(scenario.cell.arm.visual_meshes[i], "given.arm_" + std::to_string(i));

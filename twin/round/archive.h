@@ -15,8 +15,8 @@ struct ArchivedFile {
 
 /// Names the scenario's own files (meshes, part, cell model with its devices) by what their copies
 /// in the result folder are called, so that the resolved configuration runs wherever the folder is
-/// moved, and gives the copies. Shipped ones stay names. `folder` as in ScenarioBin. Throws
+/// moved, and gives the copies. Shipped ones stay names. Throws
 /// Error(kMissing | kIo) for a file that cannot be read.
-std::vector<ArchivedFile> ArchiveInputs(Scenario& scenario, const std::string& folder);
+std::vector<ArchivedFile> ArchiveInputs(Scenario& scenario);
 
 }  // namespace tubetwin

@@ -43,7 +43,7 @@ void CellConfig::Arm::Visit(ConfigVisitor& v) {
   v.Field("start_speed_m_s",
           "a real arm's fingers move no faster until the first tube is placed; 0: as planned",
           start_speed_m_s, {0, 2});
-  v.Field("visual_meshes",
+  v.Files("visual_meshes",
           "meshes (STL, OBJ, PLY) of base and links 1 to 6 in their own frames, for pictures; "
           "empty texts: plain shapes",
           visual_meshes);
@@ -62,7 +62,7 @@ void CellConfig::Visit(ConfigVisitor& v) {
                "what the cell is like: the name of a shipped cell model or the file of one; the "
                "other keys say how to reach its devices",
                model);
-  v.Field("recording", "cell.rec.zst that devices with the driver replay answer from", recording);
+  v.File("recording", "cell.rec.zst that devices with the driver replay answer from", recording);
   v.Section("arm", "the arm", arm);
   v.Section("gripper", "the gripper", gripper);
   v.Section("wrist", "the force/torque sensor", wrist);

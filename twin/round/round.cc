@@ -117,17 +117,16 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   RequireTwin(given, "this round");
   const double began = WallClock_s();
   Scenario scenario = given;
-  const std::optional<RoundCheckpoint> held =
-      ReadRoundCheckpoint(scenario, options.scenario_folder);
+  const std::optional<RoundCheckpoint> held = ReadRoundCheckpoint(scenario);
   if (held) scenario.seed = held->seed;
-  const Pile asked = ScenarioPile(scenario, options.scenario_folder);
+  const Pile asked = ScenarioPile(scenario);
   const fs::path out(options.out_folder);
   // A given pile is archived, so that the resolved configuration runs wherever the folder is moved.
   const bool archive_pile = !scenario.pile.file.empty();
-  std::vector<Recording::Visual> visuals = ScenarioVisuals(scenario, options.scenario_folder);
+  std::vector<Recording::Visual> visuals = ScenarioVisuals(scenario);
   Scenario archived = scenario;
   if (archive_pile) archived.pile.file = "given.pile.json";
-  const std::vector<ArchivedFile> inputs = ArchiveInputs(archived, options.scenario_folder);
+  const std::vector<ArchivedFile> inputs = ArchiveInputs(archived);
   const std::string resolved = ResolvedToml(archived);
   ClaimResultFolder(options.out_folder, resolved, options.force);
 
@@ -170,7 +169,7 @@ RoundResult RunCellRound(Cell& cell, const Scenario& scenario, const RoundOption
   const fs::path out(options.out_folder);
   const Part part = LoadPart(ScenarioPartName(scenario));
   Scenario archived = scenario;
-  const std::vector<ArchivedFile> inputs = ArchiveInputs(archived, options.scenario_folder);
+  const std::vector<ArchivedFile> inputs = ArchiveInputs(archived);
   const std::string resolved = ResolvedToml(archived);
   ClaimResultFolder(options.out_folder, resolved, options.force);
   WriteInputs(inputs, out);

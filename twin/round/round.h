@@ -21,7 +21,6 @@ enum class RoundKeep {
 
 struct RoundOptions {
   std::string out_folder;
-  std::string scenario_folder = ".";  ///< What relative file names in the scenario refer to.
   Parallelism parallelism = Parallelism::All();
   RoundKeep keep = RoundKeep::kAll;
   bool video = false;  ///< With kAll only.

@@ -21,12 +21,11 @@ void SaveRoundCheckpoint(const Pile& start, std::int64_t seed, const Json& cell,
   WriteJsonFile(document, path);
 }
 
-std::optional<RoundCheckpoint> ReadRoundCheckpoint(const Scenario& scenario,
-                                                   const std::string& folder) {
+std::optional<RoundCheckpoint> ReadRoundCheckpoint(const Scenario& scenario) {
   const fs::path file(scenario.pile.file);
   if (file.extension() != ".json") return std::nullopt;
   RoundCheckpoint held;
-  held.file = (file.is_relative() ? fs::path(folder) / file : file).string();
+  held.file = file.string();
   held.document = ReadJsonFile(held.file);
   if (!held.document.is_object() || !held.document.contains("held")) return std::nullopt;
   const JsonView stored = JsonView(held.document, held.file).Field("held");
@@ -36,14 +35,13 @@ std::optional<RoundCheckpoint> ReadRoundCheckpoint(const Scenario& scenario,
   return held;
 }
 
-std::vector<std::string> PileFilesOf(const Scenario& scenario, const std::string& folder) {
+std::vector<std::string> PileFilesOf(const Scenario& scenario) {
   std::vector<std::string> files;
   const fs::path given(scenario.pile.file);
-  const fs::path path = given.is_relative() ? fs::path(folder) / given : given;
-  if (given.empty() || !fs::is_directory(path)) return files;
-  for (const auto& entry : fs::directory_iterator(path)) {
+  if (given.empty() || !fs::is_directory(given)) return files;
+  for (const auto& entry : fs::directory_iterator(given)) {
     if (entry.path().extension() == ".json") {
-      files.push_back((given / entry.path().filename()).string());
+      files.push_back(entry.path().string());
     }
   }
   std::sort(files.begin(), files.end());

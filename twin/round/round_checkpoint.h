@@ -32,11 +32,10 @@ void SaveRoundCheckpoint(const Pile& start, std::int64_t seed, const Json& cell,
 
 /// The stored round that the scenario's pile file is, or nothing for any other pile or none.
 /// Throws Error(kBadData).
-std::optional<RoundCheckpoint> ReadRoundCheckpoint(const Scenario& scenario,
-                                                   const std::string& folder);
+std::optional<RoundCheckpoint> ReadRoundCheckpoint(const Scenario& scenario);
 
 /// The files that rounds start from when the scenario's `pile.file` is a folder: its *.json by
 /// name, round r of a campaign takes the r-th. Empty when it is no folder.
-std::vector<std::string> PileFilesOf(const Scenario& scenario, const std::string& folder);
+std::vector<std::string> PileFilesOf(const Scenario& scenario);
 
 }  // namespace tubetwin

@@ -1,18 +1,11 @@
 #include "twin/round/scenario.h"
 
-#include <filesystem>
-
 #include "models/base/error.h"
 #include "models/mesh/bin_mesh.h"
 #include "models/mesh/mesh.h"
 
 namespace tubetwin {
 namespace {
-
-std::string PathIn(const std::string& folder, const std::string& file) {
-  const std::filesystem::path path(file);
-  return (path.is_relative() ? std::filesystem::path(folder) / path : path).string();
-}
 
 std::vector<std::string> MeshUnitChoices() {
   std::vector<std::string> units = MeshUnits();
@@ -63,8 +56,8 @@ struct BinMesh {
   MeshBin found;
 };
 
-BinMesh BinOfMesh(const Scenario& scenario, const std::string& folder) {
-  const std::string path = PathIn(folder, scenario.bin.mesh);
+BinMesh BinOfMesh(const Scenario& scenario) {
+  const std::string& path = scenario.bin.mesh;
   BinMesh bin;
   bin.mesh = ReadMesh(path);
   ScaleToMetres(bin.mesh, scenario.bin.mesh_units, path, "bin.mesh_units");
@@ -78,12 +71,12 @@ BinMesh BinOfMesh(const Scenario& scenario, const std::string& folder) {
 }  // namespace
 
 void Scenario::PileConfig::Visit(ConfigVisitor& v) {
-  v.Field("file",
-          "pile to start from (pile.json, CSV or the public set's text), or a moment that "
-          "cycle.end_at_several stored; in campaigns a folder of them too, one for each round; "
-          "empty: generate",
-          file);
-  v.Field("part", "part name or part file; empty: what the pile file says, else pvc_a", part);
+  v.File("file",
+         "pile to start from (pile.json, CSV or the public set's text), or a moment that "
+         "cycle.end_at_several stored; in campaigns a folder of them too, one for each round; "
+         "empty: generate",
+         file);
+  v.NameOrFile("part", "part name or part file; empty: what the pile file says, else pvc_a", part);
   v.Field("count", "tubes to generate", count, {1, 40});
   v.Choice("arrangement", "how generated tubes are laid", arrangement,
            {"dropped", "stirred", "threaded"});
@@ -92,7 +85,7 @@ void Scenario::PileConfig::Visit(ConfigVisitor& v) {
 void Scenario::BinConfig::Visit(ConfigVisitor& v) {
   v.Field("size_m", "long, short, wall height in metres; empty: the pile's, else the cell model's",
           size_m, 0, {0.01, 3.0});
-  v.Field("mesh", "STL, OBJ or PLY of the bin, z upwards: gives size_m and looks", mesh);
+  v.File("mesh", "STL, OBJ or PLY of the bin, z upwards: gives size_m and looks", mesh);
   v.Choice("mesh_units", "unit of the mesh; empty: metres", mesh_units, MeshUnitChoices());
   v.NumbersOrNone("X_BN",
                   "floor centre x y z in metres and yaw in degrees, in the robot's base; empty: "
@@ -101,8 +94,8 @@ void Scenario::BinConfig::Visit(ConfigVisitor& v) {
 }
 
 void Scenario::PartConfig::Visit(ConfigVisitor& v) {
-  v.Field("name", "what lies in the bin of this cell: part name or part file; [pile] part wins",
-          name);
+  v.NameOrFile("name",
+               "what lies in the bin of this cell: part name or part file; [pile] part wins", name);
 }
 
 void Scenario::Visit(ConfigVisitor& v) {
@@ -228,8 +221,7 @@ Scenario ReadScenario(const ConfigSource& source, const std::string& profile) {
   return scenario;
 }
 
-Bin ScenarioBin(const Scenario& scenario, const std::optional<std::array<double, 3>>& pile_size_m,
-                const std::string& folder) {
+Bin ScenarioBin(const Scenario& scenario, const std::optional<std::array<double, 3>>& pile_size_m) {
   const CellLayout layout = LoadCellModel(scenario.cell.model).layout;
   Bin bin;
   bin.size_m = pile_size_m.value_or(layout.bin_size_m);
@@ -246,19 +238,17 @@ Bin ScenarioBin(const Scenario& scenario, const std::optional<std::array<double,
       throw Error(ErrorKind::kConfig,
                   "bin.size_m and bin.mesh are both given; the mesh says the size: leave one out");
     }
-    bin.size_m = BinOfMesh(scenario, folder).found.size_m;
+    bin.size_m = BinOfMesh(scenario).found.size_m;
   }
   bin.X_BN = scenario.bin.X_BN.empty() ? layout.X_BN : PoseOfBin(scenario.bin.X_BN);
   return bin;
 }
 
-std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario,
-                                               const std::string& folder) {
+std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario) {
   std::vector<Recording::Visual> visuals;
   if (!scenario.bin.mesh.empty()) {
-    BinMesh bin = BinOfMesh(scenario, folder);
-    const RigidTransform X_BM =
-        ScenarioBin(scenario, std::nullopt, folder).X_BN * bin.found.X_MN.inverse();
+    BinMesh bin = BinOfMesh(scenario);
+    const RigidTransform X_BM = ScenarioBin(scenario, std::nullopt).X_BN * bin.found.X_MN.inverse();
     for (Vector3& v : bin.mesh.vertices) v = X_BM * v;
     visuals.push_back({"world", {"bin_floor", "bin_wall_"}, std::move(bin.mesh)});
   }
@@ -270,7 +260,7 @@ std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario,
   }
   for (std::size_t i = 0; i < arm.visual_meshes.size(); ++i) {
     if (arm.visual_meshes[i].empty()) continue;
-    const std::string path = PathIn(folder, arm.visual_meshes[i]);
+    const std::string& path = arm.visual_meshes[i];
     Mesh mesh = ReadMesh(path);
     ScaleToMetres(mesh, arm.visual_units, path, "cell.arm.visual_units");
     // What is mounted on the flange stays.
@@ -281,23 +271,23 @@ std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario,
   return visuals;
 }
 
-Pile AskedPile(const Scenario& scenario, const std::string& folder) {
+Pile AskedPile(const Scenario& scenario) {
   PileOverrides overrides;
   if (!scenario.pile.part.empty() || !scenario.part.name.empty()) {
     overrides.part = ScenarioPartName(scenario);
   }
   if (!scenario.bin.size_m.empty() || !scenario.bin.mesh.empty()) {
-    overrides.bin_size_m = ScenarioBin(scenario, std::nullopt, folder).size_m;
+    overrides.bin_size_m = ScenarioBin(scenario, std::nullopt).size_m;
   }
-  Pile pile = LoadPile(PathIn(folder, scenario.pile.file), overrides);
-  pile.bin = ScenarioBin(scenario, pile.bin.size_m, folder);
+  Pile pile = LoadPile(scenario.pile.file, overrides);
+  pile.bin = ScenarioBin(scenario, pile.bin.size_m);
   return pile;
 }
 
-Pile ScenarioPile(const Scenario& scenario, const std::string& folder) {
-  if (!scenario.pile.file.empty()) return AskedPile(scenario, folder);
+Pile ScenarioPile(const Scenario& scenario) {
+  if (!scenario.pile.file.empty()) return AskedPile(scenario);
   const Part part = LoadPart(ScenarioPartName(scenario));
-  const Bin bin = ScenarioBin(scenario, std::nullopt, folder);
+  const Bin bin = ScenarioBin(scenario, std::nullopt);
   const RoundPhysics physics = ScenarioPhysics(scenario, part);
   SettleResult made = GeneratePile(part, bin, scenario.pile.count, scenario.pile.arrangement,
                                    static_cast<std::uint64_t>(scenario.seed), physics);

@@ -96,22 +96,21 @@ const std::vector<std::string>& PipelineProfiles();
 Scenario ReadScenario(const ConfigSource& source, const std::string& profile = "");
 
 /// The bin of the scenario for a pile that says `pile_size_m`; the cell model's where none does.
-/// `folder`: what relative file names refer to. Throws Error(kConfig) when both size and mesh are
+/// Throws Error(kConfig) when both size and mesh are
 /// given, Error(kBadData) saying why a mesh is no bin, and as ReadMesh does.
-Bin ScenarioBin(const Scenario& scenario, const std::optional<std::array<double, 3>>& pile_size_m,
-                const std::string& folder);
+Bin ScenarioBin(const Scenario& scenario, const std::optional<std::array<double, 3>>& pile_size_m);
 
 /// The scenario's meshes for pictures. Throws as ScenarioBin does, and Error(kConfig) for more
 /// meshes than the arm has links.
-std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario, const std::string& folder);
+std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario);
 
 /// The pile of `scenario.pile.file` as it is, with the scenario's part and bin. Precondition: a
 /// file is given. Throws as LoadPile does.
-Pile AskedPile(const Scenario& scenario, const std::string& folder);
+Pile AskedPile(const Scenario& scenario);
 
 /// The pile that the scenario asks for, not yet settled when it comes from a file; generated ones
-/// are. `folder`: what relative file names refer to. Throws as LoadPile and GeneratePile do, and
+/// are. Throws as LoadPile and GeneratePile do, and
 /// Error(kInternal) when no settled pile could be generated.
-Pile ScenarioPile(const Scenario& scenario, const std::string& folder);
+Pile ScenarioPile(const Scenario& scenario);
 
 }  // namespace tubetwin

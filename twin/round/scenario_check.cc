@@ -23,16 +23,16 @@ struct Asked {
   Bin bin;
   int count = 0;  ///< 0: not known.
 
-  Asked(const Scenario& scenario, const std::string& folder) {
+  explicit Asked(const Scenario& scenario) {
     if (!scenario.pile.file.empty()) {
-      const Pile pile = AskedPile(scenario, folder);
+      const Pile pile = AskedPile(scenario);
       part = pile.part;
       bin = pile.bin;
       count = static_cast<int>(pile.tubes.size());
       return;
     }
     part = LoadPart(ScenarioPartName(scenario));
-    bin = ScenarioBin(scenario, std::nullopt, folder);
+    bin = ScenarioBin(scenario, std::nullopt);
     if (scenario.cell.HasTwin()) count = scenario.pile.count;
   }
 };
@@ -55,16 +55,16 @@ PartFitCell PartFitOf(const Scenario& scenario, const CellModel& model) {
   return cell;
 }
 
-std::vector<Finding> CheckScenario(const Scenario& scenario, const std::string& folder) {
+std::vector<Finding> CheckScenario(const Scenario& scenario) {
   const CellModel model = ScenarioModel(scenario);
-  const Asked asked(scenario, folder);
+  const Asked asked(scenario);
   return CheckCell({model, asked.bin, asked.part,
                     ScanPoses(scenario.scan, model, asked.bin, asked.part.radius_m), asked.count,
                     scenario.nominal_scanner_pose && !scenario.cell.IsTwin()});
 }
 
-std::vector<Finding> CheckScenarioPart(const Scenario& scenario, const std::string& folder) {
-  return JudgePart(Asked(scenario, folder).part, PartFitOf(scenario, ScenarioModel(scenario)));
+std::vector<Finding> CheckScenarioPart(const Scenario& scenario) {
+  return JudgePart(Asked(scenario).part, PartFitOf(scenario, ScenarioModel(scenario)));
 }
 
 std::string FindingsTable(const std::vector<Finding>& findings) {

@@ -12,14 +12,14 @@
 namespace tubetwin {
 
 /// Judges the scenario's cell for its part and pile before anything runs (planner/cell_check).
-/// `folder` as in ScenarioBin. Throws as ScenarioModel, LoadPart and LoadPile do.
-std::vector<Finding> CheckScenario(const Scenario& scenario, const std::string& folder);
+/// Throws as ScenarioModel, LoadPart and LoadPile do.
+std::vector<Finding> CheckScenario(const Scenario& scenario);
 
 /// What the scenario's cell and configuration judge a part by.
 PartFitCell PartFitOf(const Scenario& scenario, const CellModel& model);
 
 /// Judges the scenario's part (JudgePart). Throws as LoadPart does.
-std::vector<Finding> CheckScenarioPart(const Scenario& scenario, const std::string& folder);
+std::vector<Finding> CheckScenarioPart(const Scenario& scenario);
 
 /// A line for each finding, columns aligned; those that are not ok with their remedy below.
 std::string FindingsTable(const std::vector<Finding>& findings);

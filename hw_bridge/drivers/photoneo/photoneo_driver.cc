@@ -1,7 +1,5 @@
 #include "hw_bridge/drivers/photoneo/photoneo_driver.h"
 
-#include <filesystem>
-
 namespace tubetwin {
 
 std::unique_ptr<DeviceDriver<Scanner>> PhotoneoDriver::Clone() const {
@@ -32,7 +30,6 @@ std::unique_ptr<Scanner> PhotoneoDriver::Connect(const std::string& link,
                                                  const DriverContext& context) const {
   ScannerLinkConfig used = config;
   used.driver = link;
-  used.path = (std::filesystem::path(context.folder) / config.path).lexically_normal().string();
   used.rate = context.rate;
   return ConnectScanner(used, context.believed_X_NS);
 }

@@ -11,7 +11,7 @@ namespace tubetwin {
 
 void ScannerLinkConfig::Visit(ConfigVisitor& v) {
   v.Field("host", "gige: IPv4 address", host);
-  v.Field("path", "folder: where scans are asked for and saved", path);
+  v.File("path", "folder: where scans are asked for and saved", path);
   v.Field("timeout_s", "from a trigger to its whole scan", timeout_s, {0.1, 600});
 }
 

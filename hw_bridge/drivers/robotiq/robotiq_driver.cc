@@ -7,6 +7,7 @@ namespace tubetwin {
 namespace {
 
 constexpr const char* kRtu = "modbus_rtu";
+constexpr const char* kController = "robotiq";
 
 }  // namespace
 
@@ -32,6 +33,14 @@ void RobotiqDriver::Visit(ConfigVisitor& v) { config.Visit(v); }
 
 std::unique_ptr<Gripper> RobotiqDriver::Connect(const std::string& link,
                                                 const DriverContext& context) const {
+  if (context.model.gripper.controller != kController) {
+    throw Error(ErrorKind::kConfig,
+                "cell.gripper.driver: " + link +
+                    " speaks Robotiq's registers; the cell model's "
+                    "gripper is a " +
+                    context.model.gripper.name +
+                    "; allowed are grippers whose file says controller = \"robotiq\"");
+  }
   RobotiqConfig used = config;
   used.transport = link == kRtu ? "rtu" : "tcp";
   used.rate = context.rate;

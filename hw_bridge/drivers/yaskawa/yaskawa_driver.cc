@@ -3,6 +3,11 @@
 #include "hw_bridge/drivers/yaskawa/yaskawa_arm.h"
 
 namespace tubetwin {
+namespace {
+
+constexpr const char* kController = "motoros";
+
+}  // namespace
 
 std::unique_ptr<DeviceDriver<Arm>> YaskawaDriver::Clone() const {
   return std::make_unique<YaskawaDriver>(*this);
@@ -24,6 +29,13 @@ std::string YaskawaDriver::Address() const {
 
 std::unique_ptr<Arm> YaskawaDriver::Connect(const std::string&,
                                             const DriverContext& context) const {
+  if (context.model.arm.controller != kController) {
+    throw Error(
+        ErrorKind::kConfig,
+        "cell.arm.driver: simple_message speaks for Yaskawa controllers; the cell model's arm "
+        "is a " +
+            context.model.arm.name + "; allowed are arms whose file says controller = \"motoros\"");
+  }
   YaskawaConfig used = config;
   used.armed = context.may_move;
   used.rate = context.rate;
