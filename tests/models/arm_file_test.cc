@@ -101,9 +101,9 @@ TEST_CASE("Bodies that can meet are those three apart, but for those that a file
 TEST_CASE("Figures of a shape reach its half sizes and its pose", "[unit]") {
   const ArmModel arm = LoadArm("gp12");
   const auto shape = std::find_if(arm.shapes.begin(), arm.shapes.end(),
-                                  [](const ArmShape& s) { return s.name == "wrist"; });
+                                  [](const Shape& s) { return s.name == "wrist"; });
   REQUIRE(shape != arm.shapes.end());
-  CHECK(shape->kind == ArmShape::Kind::kCylinder);
+  CHECK(shape->kind == Shape::Kind::kCylinder);
   CHECK(shape->link == 5);
   CHECK(shape->size_m == Vector3(0.072, 0.075, 0));
   // Turned about y by a quarter: its axis lies along the link's x.

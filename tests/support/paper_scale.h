@@ -1,11 +1,10 @@
 #pragma once
 
-#include "hw_bridge/drivers/robotiq/robotiq_driver.h"
-#include "tests/support/paper_cell.h"
+#include "hw_bridge/codecs/robotiq_registers.h"
 
 namespace tubetwin {
 
-/// What the registers of the paper's gripper mean.
-inline GripperScale PaperScale() { return ScaleOf(PaperCell().gripper); }
+/// What the registers of the paper's gripper mean: its data sheet.
+inline GripperScale PaperScale() { return {0.085, 0.020, 0.150, 20.0, 235.0}; }
 
 }  // namespace tubetwin
