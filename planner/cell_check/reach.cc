@@ -20,7 +20,9 @@ constexpr double kTilt_deg = 45.0;
 constexpr double kSideRoom_m = 0.01;   // of the open fingers beside a tube
 constexpr double kFingers_m = 0.0005;  // they end 2 mm over the floor
 constexpr double kOthers_m = 0.002;
-constexpr double kManipulability = 0.02;  // as along lines
+/// Along lines 0.02 is refused; what is over it here leaves something for leaning and turning.
+constexpr double kManipulability = 0.03;
+constexpr double kLift_m = 0.15;  // grasped tubes are lifted at least so high from there
 
 /// Places along a side of that half length, `from_wall_m` from its ends.
 std::vector<double> Places(double half_m, double from_wall_m) {
@@ -66,7 +68,7 @@ class Reach {
             0.5 * (opening_m_ + 2.0 * gripper.finger_thickness_m) * std::sin(std::abs(lean));
         RigidTransform X_BE = MakeTransform(R, X_BSurface * Vector3(x, y, height_m + deeper_m));
         X_BE = X_BE * Translation(0, 0, PadRetreat(gripper, 2.0 * radius_m));
-        if (Gets(X_BE)) return true;
+        if (Gets(X_BE) && Gets(Translation(0, 0, kLift_m) * X_BE)) return true;
         if (lean == 0.0) break;
       }
     }

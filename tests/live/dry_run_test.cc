@@ -74,7 +74,7 @@ TEST_CASE("A rehearsal tells how near its motions come and which joint sets the 
   CHECK(report.slowest_joint.speed_rad_s == Approx(0.2));
   CHECK(report.slowest_joint.limit_rad_s == arm.joints[4].max_speed_rad_s);
   // The least of what the checker says along the way, asked in finer steps here.
-  const ClearanceChecker clearance(arm, cell.model.layout, cell.bin);
+  const ClearanceChecker clearance(cell.model, cell.bin);
   double least_m = 0.05;
   const JointTrajectory path{{from, middle, to}};
   for (double t = 0.0; t <= 2.0; t += 0.002) {

@@ -289,8 +289,8 @@ TEST_CASE("Transfers join every part of the bin with every corner of the tray", 
               Planner().PlanTransfer(q, MakeTransform(RotX(kPi) * RotZ(0.3), p_BE), options));
           CheckLimits(there);
           for (double t = 0; t < there.duration_s(); t += 0.02) {
-            const auto near =
-                Planner().clearance().Check(Sample(there.trajectory(), t).q, options.opening_m);
+            const auto near = Planner().clearance().Check(Sample(there.trajectory(), t).q,
+                                                          PaperCell().gripper.stroke_m);
             // Between two pieces of the path E moves less than half of the clearance asked.
             CHECK(near.clearance_m > 0.5 * options.clearance_m);
           }
