@@ -166,15 +166,11 @@ struct ScanPoseEntry {
   }
 };
 
-[[noreturn]] void Fail(const std::string& path, const std::string& problem) {
-  throw Error(ErrorKind::kConfig, path + ": " + problem);
-}
-
 Pose7 PoseOf(const std::vector<double>& list, const std::string& path, const char* key,
              const std::string& when) {
   if (list.size() != 7) {
-    Fail(path, std::string("scanner_mount.") + key + " has " + std::to_string(list.size()) +
-                   " numbers; " + when + " seven are needed: x y z, quaternion w x y z");
+    RefuseFile(path, std::string("scanner_mount.") + key + " has " + std::to_string(list.size()) +
+                         " numbers; " + when + " seven are needed: x y z, quaternion w x y z");
   }
   Pose7 out;
   std::copy(list.begin(), list.end(), out.begin());
@@ -184,18 +180,19 @@ Pose7 PoseOf(const std::vector<double>& list, const std::string& path, const cha
 void SetMount(const MountEntry& entry, const std::string& path, CellLayout& layout) {
   if (entry.on == "flange") {
     if (!entry.X_BS.empty() || !entry.p_BClear.empty()) {
-      Fail(path, "scanner_mount.X_BS and p_BClear are for a stand; on is \"flange\"");
+      RefuseFile(path, "scanner_mount.X_BS and p_BClear are for a stand; on is \"flange\"");
     }
     layout.scanner_mount = CellLayout::ScannerMount::kFlange;
     layout.X_FS = ToPose(PoseOf(entry.X_FS, path, "X_FS", "on the flange"), path + ": X_FS");
     return;
   }
-  if (!entry.X_FS.empty()) Fail(path, "scanner_mount.X_FS is for the flange; on is \"stand\"");
+  if (!entry.X_FS.empty())
+    RefuseFile(path, "scanner_mount.X_FS is for the flange; on is \"stand\"");
   layout.scanner_mount = CellLayout::ScannerMount::kStand;
   layout.X_BS = ToPose(PoseOf(entry.X_BS, path, "X_BS", "on a stand"), path + ": X_BS");
   if (entry.p_BClear.size() != 3) {
-    Fail(path, "scanner_mount.p_BClear has " + std::to_string(entry.p_BClear.size()) +
-                   " numbers; on a stand three are needed: x y z of the pads while it looks");
+    RefuseFile(path, "scanner_mount.p_BClear has " + std::to_string(entry.p_BClear.size()) +
+                         " numbers; on a stand three are needed: x y z of the pads while it looks");
   }
   layout.p_BClear = {entry.p_BClear[0], entry.p_BClear[1], entry.p_BClear[2]};
 }
@@ -204,12 +201,13 @@ void SetScan(const ScanEntry& entry, const std::vector<ConfigSource>& poses,
              const std::string& path, CellLayout& layout) {
   const bool flange = layout.scanner_mount == CellLayout::ScannerMount::kFlange;
   if (!flange && (!poses.empty() || entry.height_m > 0.0)) {
-    Fail(path, "[scan] and [[scan_pose]] are for a scanner on the flange; this one is on a stand");
+    RefuseFile(path,
+               "[scan] and [[scan_pose]] are for a scanner on the flange; this one is on a stand");
   }
   if (flange && poses.empty() && entry.height_m <= 0.0) {
-    Fail(path,
-         "scan.height_m is missing: the camera's height over the floor in planned views is "
-         "needed, or [[scan_pose]] tables");
+    RefuseFile(path,
+               "scan.height_m is missing: the camera's height over the floor in planned views is "
+               "needed, or [[scan_pose]] tables");
   }
   layout.scan_height_m = entry.height_m;
   layout.scan_covered_m = entry.covered_m;

@@ -14,6 +14,9 @@ namespace {
 constexpr double kOverAxis_m = 0.009;   // pads' centre over the tube's axis: holds best there
 constexpr double kOverFloor_m = 0.002;  // pads' lower edge over the floor
 
+constexpr const char* kOpeningCounts = "steps of the asked and measured opening over the stroke";
+constexpr const char* kCommandCounts = "steps of force and speed between their ends";
+
 using Table = std::vector<std::array<double, 2>>;  // opening, advance
 
 double Secant(const Table& table, int i) {
@@ -48,10 +51,8 @@ struct GripperEntry {
     v.Field("stroke_m", "largest opening between the pads", spec.stroke_m, length);
     v.Field("force_N", "least and largest force of a pad", force_N, {0.1, 10000});
     v.Field("speed_m_s", "least and largest speed of the opening", speed_m_s, {1e-4, 10});
-    v.Field("opening_counts", "steps of the asked and measured opening over the stroke",
-            spec.opening_counts, {10, 1000000});
-    v.Field("command_counts", "steps of force and speed between their ends", spec.command_counts,
-            {1, 1000000});
+    v.Field("opening_counts", kOpeningCounts, spec.opening_counts, {10, 1000000});
+    v.Field("command_counts", kCommandCounts, spec.command_counts, {1, 1000000});
     v.Field("pad_width_m", "of a pad, along a grasped tube", spec.pad_width_m, length);
     v.Field("pad_height_m", "of a pad, along the tool", spec.pad_height_m, length);
     v.Field("finger_thickness_m", "along the closing direction, from the pad's face outwards",
@@ -71,22 +72,18 @@ struct GripperEntry {
   }
 };
 
-[[noreturn]] void Fail(const std::string& path, const std::string& problem) {
-  throw Error(ErrorKind::kConfig, path + ": " + problem);
-}
-
 void RequireRising(const std::string& path, const char* key, double low, double high) {
   if (low < high) return;
-  Fail(path, std::string(key) + " is [" + Number(low) + ", " + Number(high) +
-                 "]; the second number must be larger");
+  RefuseFile(path, std::string(key) + " is [" + Number(low) + ", " + Number(high) +
+                       "]; the second number must be larger");
 }
 
 void RequireRisingOpenings(const std::string& path, const std::string& key,
                            const std::vector<double>& openings) {
   for (std::size_t i = 1; i < openings.size(); ++i) {
     if (openings[i] <= openings[i - 1]) {
-      Fail(path, key + " goes from " + Number(openings[i - 1]) + " to " + Number(openings[i]) +
-                     "; openings must rise");
+      RefuseFile(path, key + " goes from " + Number(openings[i - 1]) + " to " +
+                           Number(openings[i]) + "; openings must rise");
     }
   }
 }
@@ -94,8 +91,8 @@ void RequireRisingOpenings(const std::string& path, const std::string& key,
 void RequireSameCount(const std::string& path, const std::string& key, std::size_t found,
                       const std::string& other, std::size_t needed) {
   if (found == needed) return;
-  Fail(path, key + " has " + std::to_string(found) + " numbers; one for each of " + other +
-                 " is needed: " + std::to_string(needed));
+  RefuseFile(path, key + " has " + std::to_string(found) + " numbers; one for each of " + other +
+                       " is needed: " + std::to_string(needed));
 }
 
 GripperSpec::Link ReadLink(const ConfigSource& source, const std::string& path) {
@@ -109,9 +106,9 @@ GripperSpec::Link ReadLink(const ConfigSource& source, const std::string& path) 
   });
   const std::string name = "link '" + link.shape.name + "': ";
   if (link.shape.kind != Shape::Kind::kBox && link.shape.kind != Shape::Kind::kCapsule) {
-    Fail(path, name + "kind is a cylinder or sphere; allowed: box, capsule");
+    RefuseFile(path, name + "kind is a cylinder or sphere; allowed: box, capsule");
   }
-  if (opening_m.empty()) Fail(path, name + "opening_m is empty; at least one row is needed");
+  if (opening_m.empty()) RefuseFile(path, name + "opening_m is empty; at least one row is needed");
   RequireRisingOpenings(path, name + "opening_m", opening_m);
   RequireSameCount(path, name + "y_m", y_m.size(), "opening_m", opening_m.size());
   RequireSameCount(path, name + "z_m", z_m.size(), "opening_m", opening_m.size());
@@ -169,6 +166,10 @@ GripperSpec ReadGripper(const ModelFile& file) {
   source.ReadInto(entry);
   RequireGiven([&](ConfigVisitor& v) { entry.Visit(v); }, file.path);
   GripperSpec& spec = entry.spec;
+  if (spec.opening_counts == 0)
+    RefuseFile(file.path, "opening_counts is missing: " + std::string(kOpeningCounts));
+  if (spec.command_counts == 0)
+    RefuseFile(file.path, "command_counts is missing: " + std::string(kCommandCounts));
   RequireRising(file.path, "force_N", entry.force_N[0], entry.force_N[1]);
   RequireRising(file.path, "speed_m_s", entry.speed_m_s[0], entry.speed_m_s[1]);
   spec.min_force_N = entry.force_N[0];
@@ -181,7 +182,8 @@ GripperSpec ReadGripper(const ModelFile& file) {
   for (std::size_t i = 0; i < entry.tip_opening_m.size(); ++i) {
     spec.tip_advance_m.push_back({entry.tip_opening_m[i], entry.tip_advance_m[i]});
   }
-  if (shapes.empty()) Fail(file.path, "no [[shape]]; the body that carries the fingers is needed");
+  if (shapes.empty())
+    RefuseFile(file.path, "no [[shape]]; the body that carries the fingers is needed");
   for (const ConfigSource& shape : shapes) {
     spec.body.push_back(ReadShape(shape));
     spec.body.back().link = kFlangeBody;

@@ -98,4 +98,13 @@ void RequireGiven(const std::function<void(ConfigVisitor&)>& visit, const std::s
   visit(given);
 }
 
+void RefuseFile(const std::string& path, const std::string& problem) {
+  throw Error(ErrorKind::kConfig, path + ": " + problem);
+}
+
+void RefuseKey(const ConfigSource& source, const std::string& key, const std::string& problem) {
+  const std::string at = source.PlaceOf(key);
+  RefuseFile(at.empty() ? source.place() : at, problem);
+}
+
 }  // namespace tubetwin

@@ -36,4 +36,10 @@ extern const double kNotGiven;
 /// is empty, and its doc.
 void RequireGiven(const std::function<void(ConfigVisitor&)>& visit, const std::string& path);
 
+/// Throws Error(kConfig): what is wrong in a model file, or at a key of it (its place, or the whole
+/// table's where the key is not there).
+[[noreturn]] void RefuseFile(const std::string& path, const std::string& problem);
+[[noreturn]] void RefuseKey(const ConfigSource& source, const std::string& key,
+                            const std::string& problem);
+
 }  // namespace tubetwin

@@ -22,7 +22,7 @@ constexpr double kGoodAcross = 22.0, kLeastAcross = 18.0;
 /// What another tube of the kind hides of a tube, in radii: itself and as much for the shadows.
 constexpr double kHiddenRadii = 4.0;
 /// Hooks of the shape "hooks" (scenes/draw_shape.cc).
-constexpr double kHookRadius_m = 0.05;
+constexpr double kHookedAt_m = 0.05;
 /// A half that sags by more than this share of its length hangs rather than bends.
 constexpr double kRope = 0.5;
 
@@ -133,7 +133,7 @@ Finding JudgePoints(const Part& part, const PartFitCell& cell) {
 
 /// Largest turn of the axis within a piece of `gap_m`, radians, as the part's shapes are drawn.
 double SharpestTurn(const Part& part, double gap_m) {
-  if (part.shape == "hooks") return std::min(gap_m / kHookRadius_m, Radians(part.bend_deg[1]));
+  if (part.shape == "hooks") return std::min(gap_m / kHookedAt_m, Radians(part.bend_deg[1]));
   if (part.shape == "polyline") return Radians(part.bend_deg[1]);
   if (part.shape == "arcs") {
     return Radians(part.bend_deg[1]) * part.bends[1] * gap_m / part.length_m;

@@ -50,8 +50,7 @@ RigidTransform LookFrom(const ScannerSpec& spec, double x, double y, double z, d
 }
 
 /// Views straight down that cover the bin.
-std::vector<RigidTransform> CoveringPoses(const CellModel& model, const Bin& bin,
-                                          double radius_m) {
+std::vector<RigidTransform> CoveringPoses(const CellModel& model, const Bin& bin, double radius_m) {
   const ScannerSpec& spec = model.scanner;
   const CellLayout& layout = model.layout;
   const double tips_below_m =
@@ -83,8 +82,7 @@ std::vector<RigidTransform> CoveringPoses(const CellModel& model, const Bin& bin
 
 }  // namespace
 
-std::vector<RigidTransform> ScanPosesOf(const CellModel& model, const Bin& bin,
-                                        double radius_m) {
+std::vector<RigidTransform> ScanPosesOf(const CellModel& model, const Bin& bin, double radius_m) {
   const CellLayout& layout = model.layout;
   if (layout.scanner_mount == CellLayout::ScannerMount::kStand) return {layout.X_BS};
   if (!layout.scan_poses_BS.empty()) return layout.scan_poses_BS;

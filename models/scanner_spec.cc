@@ -63,10 +63,6 @@ struct ScannerEntry {
   }
 };
 
-[[noreturn]] void Fail(const std::string& path, const std::string& problem) {
-  throw Error(ErrorKind::kConfig, path + ": " + problem);
-}
-
 bool ParseSize(const std::string& text, ScanSize& size) {
   int end = 0;
   return std::sscanf(text.c_str(), "%5dx%5d%n", &size.width, &size.height, &end) == 2 &&
@@ -75,20 +71,22 @@ bool ParseSize(const std::string& text, ScanSize& size) {
 
 void Check(const ScannerSpec& spec, const std::string& path) {
   if (spec.full_width == 0 || spec.full_height == 0) {
-    Fail(path, "full_width and full_height are needed, in pixels");
+    RefuseFile(path, "full_width and full_height are needed, in pixels");
   }
-  if (spec.resolutions.empty()) Fail(path, "resolutions is empty; at least one size is needed");
+  if (spec.resolutions.empty())
+    RefuseFile(path, "resolutions is empty; at least one size is needed");
   for (const std::string& text : spec.resolutions) {
     ScanSize size;
     if (!ParseSize(text, size)) {
-      Fail(path, "resolutions: '" + text + "' is no size; COLUMNSxROWS is needed, as in 1032x772");
+      RefuseFile(path,
+                 "resolutions: '" + text + "' is no size; COLUMNSxROWS is needed, as in 1032x772");
     }
   }
   if (spec.range_min_m >= spec.range_max_m || spec.soft_min_m >= spec.soft_max_m ||
       spec.soft_min_m > spec.range_min_m || spec.soft_max_m < spec.range_max_m) {
-    Fail(path, "range_m [" + Number(spec.range_min_m) + ", " + Number(spec.range_max_m) +
-                   "] must rise and lie within soft_range_m [" + Number(spec.soft_min_m) + ", " +
-                   Number(spec.soft_max_m) + "]");
+    RefuseFile(path, "range_m [" + Number(spec.range_min_m) + ", " + Number(spec.range_max_m) +
+                         "] must rise and lie within soft_range_m [" + Number(spec.soft_min_m) +
+                         ", " + Number(spec.soft_max_m) + "]");
   }
 }
 

@@ -29,20 +29,14 @@ struct ShapeEntry {
   }
 };
 
-[[noreturn]] void Fail(const ConfigSource& source, const std::string& key,
-                       const std::string& problem) {
-  const std::string at = source.PlaceOf(key);
-  throw Error(ErrorKind::kConfig, (at.empty() ? source.place() : at) + ": " + problem);
-}
-
 /// Which of the keys of sizes a kind of shape takes.
 void CheckSizeKeys(const ConfigSource& source, const std::string& what, const std::string& kind) {
   const bool box = kind == "box", sphere = kind == "sphere";
   for (const auto& [key, takes] : {std::pair{"size_m", box}, std::pair{"radius_m", !box},
                                    std::pair{"length_m", !box && !sphere}}) {
     const bool given = !source.PlaceOf(key).empty();
-    if (takes && !given) Fail(source, "", what + ": a " + kind + " needs the key " + key);
-    if (!takes && given) Fail(source, key, what + ": a " + kind + " has no " + key);
+    if (takes && !given) RefuseKey(source, "", what + ": a " + kind + " needs the key " + key);
+    if (!takes && given) RefuseKey(source, key, what + ": a " + kind + " has no " + key);
   }
 }
 
@@ -87,7 +81,7 @@ Shape ReadShape(const ConfigSource& source, const std::function<void(ConfigVisit
   const std::string what = "shape '" + entry.name + "'";
   for (const char* key : {"name", "kind"}) {
     if (source.PlaceOf(key).empty()) {
-      Fail(source, "", what + " lacks the key " + key + "; it has no default");
+      RefuseKey(source, "", what + " lacks the key " + key + "; it has no default");
     }
   }
   CheckSizeKeys(source, what, entry.kind);

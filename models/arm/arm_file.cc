@@ -110,18 +110,12 @@ struct ArmEntry {
       "flange_rpy_deg", "working_deg"};
 };
 
-[[noreturn]] void Fail(const ConfigSource& source, const std::string& key,
-                       const std::string& problem) {
-  const std::string at = source.PlaceOf(key);
-  throw Error(ErrorKind::kConfig, (at.empty() ? source.place() : at) + ": " + problem);
-}
-
 /// Figures of an arm have no defaults to fall back on.
 template <class Keys>
 void RequireKeys(const ConfigSource& source, const std::string& what, const Keys& keys) {
   for (const char* key : keys) {
     if (source.PlaceOf(key).empty()) {
-      Fail(source, "", what + " lacks the key " + key + "; it has no default");
+      RefuseKey(source, "", what + " lacks the key " + key + "; it has no default");
     }
   }
 }
@@ -143,15 +137,16 @@ ArmModel::Joint ReadJoint(const ConfigSource& source, int number, const ArmEntry
   joint.origin_in_parent_m = ToVector(entry.origin_m);
   const double length = ToVector(entry.axis).norm();
   if (std::abs(length - 1.0) > kRoundedUnit) {
-    Fail(source, "axis", what + ": axis has length " + Number(length) + ", a unit vector has 1");
+    RefuseKey(source, "axis",
+              what + ": axis has length " + Number(length) + ", a unit vector has 1");
   }
   joint.axis = ToVector(entry.axis) / length;
   joint.lower_rad = Radians(entry.range_deg[0]);
   joint.upper_rad = Radians(entry.range_deg[1]);
   if (joint.lower_rad >= joint.upper_rad) {
-    Fail(source, "range_deg",
-         what + ": range_deg is [" + Number(entry.range_deg[0]) + ", " +
-             Number(entry.range_deg[1]) + "]; the first has to be below the second");
+    RefuseKey(source, "range_deg",
+              what + ": range_deg is [" + Number(entry.range_deg[0]) + ", " +
+                  Number(entry.range_deg[1]) + "]; the first has to be below the second");
   }
   joint.max_speed_rad_s = Radians(entry.speed_deg_s);
   joint.max_effort_Nm = entry.effort_Nm;
@@ -177,10 +172,10 @@ ArmModel::Link ReadLink(const ConfigSource& source, int number) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(link.inertia_kgm2, Eigen::EigenvaluesOnly);
   const Vector3 moments = eigen.eigenvalues();
   if (moments[0] <= 0 || moments[0] + moments[1] < moments[2]) {
-    Fail(source, "inertia_kgm2",
-         what + ": inertia_kgm2 has the main moments " + Number(moments[0]) + ", " +
-             Number(moments[1]) + ", " + Number(moments[2]) +
-             ";\nof a body all are above 0 and none is above the sum of the others");
+    RefuseKey(source, "inertia_kgm2",
+              what + ": inertia_kgm2 has the main moments " + Number(moments[0]) + ", " +
+                  Number(moments[1]) + ", " + Number(moments[2]) +
+                  ";\nof a body all are above 0 and none is above the sum of the others");
   }
   return link;
 }
@@ -192,9 +187,9 @@ Shape ReadLinkShape(const ConfigSource& source, const ArmModel& arm) {
   for (const ArmModel::Link& link : arm.links) links.push_back(link.name);
   const auto link = std::find(links.begin(), links.end(), of.link);
   if (link == links.end()) {
-    Fail(source, "link",
-         "shape '" + shape.name + "': no link is named '" + of.link + "'; the nearest is '" +
-             NearestName(of.link, links) + "'");
+    RefuseKey(source, "link",
+              "shape '" + shape.name + "': no link is named '" + of.link + "'; the nearest is '" +
+                  NearestName(of.link, links) + "'");
   }
   shape.link = static_cast<int>(link - links.begin());
   return shape;
@@ -217,7 +212,7 @@ std::vector<std::array<int, 2>> SelfPairs(const ConfigSource& source, const ArmE
     const bool whole = std::all_of(list->begin(), list->end(),
                                    [](double body) { return body == std::floor(body); });
     if (list->size() % 2 == 0 && whole) continue;
-    Fail(source, key, std::string(key) + " has to hold pairs of whole numbers, 0 to 7");
+    RefuseKey(source, key, std::string(key) + " has to hold pairs of whole numbers, 0 to 7");
   }
   std::vector<std::array<int, 2>> pairs;
   for (int outer = kToolBody; outer > 0; --outer) {
@@ -237,15 +232,15 @@ void CheckNames(const ConfigSource& source, const char* what, const Named& list)
   std::sort(names.begin(), names.end());
   const auto twice = std::adjacent_find(names.begin(), names.end());
   if (twice == names.end()) return;
-  Fail(source, "", std::string("two ") + what + " are named '" + *twice + "'");
+  RefuseKey(source, "", std::string("two ") + what + " are named '" + *twice + "'");
 }
 
 void RequireCount(const ConfigSource& source, const std::string& key,
                   const std::vector<ConfigSource>& tables, std::size_t count) {
   if (tables.size() == count) return;
-  Fail(source, "",
-       "the arm has " + std::to_string(tables.size()) + " [[" + key + "]], but " +
-           std::to_string(count) + " are needed");
+  RefuseKey(source, "",
+            "the arm has " + std::to_string(tables.size()) + " [[" + key + "]], but " +
+                std::to_string(count) + " are needed");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kAway = 0.7;   ///< Cosine between a wall's normal and the way out to it.
 constexpr double kAlong = 0.5;  ///< Largest cosine of a wall's normal with the axis.
-constexpr double kStep = 0.25, kMaxNodes = 400.0;  ///< Between sections: radii, and how many.
+constexpr double kStep = 0.25, kMaxAxisNodes = 400.0;  ///< Between sections: radii, and how many.
 constexpr double kReach = 1.6;                     ///< Wall lies within so many radii.
 constexpr double kFlangeReach = 3.0;               ///< At the ends.
 /// A section with less wall than this does not place a node; one with less than half ends the tube.
@@ -70,7 +70,7 @@ Vector3 OutwardOf(const Polyline& line, bool first, double window_m) {
 /// others carry the line on.
 Polyline Centred(const WallCutter& cutter, const Polyline& rough, double radius_m,
                  Parallelism parallelism, std::vector<WallSection>* sections) {
-  const double step_m = std::max(kStep * radius_m, Length(rough) / kMaxNodes);
+  const double step_m = std::max(kStep * radius_m, Length(rough) / kMaxAxisNodes);
   const Polyline nodes = Resample(rough, step_m);
   const std::vector<double> at = ArcLengths(nodes);
   std::vector<std::optional<WallSection>> found(nodes.size());

@@ -1,6 +1,8 @@
 #include "planner/cell_check/cell_check.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "models/base/text.h"
 
@@ -28,11 +30,18 @@ std::string Place(const Vector3& p_N) {
 
 void AddReach(const CellCheckInput& input, std::vector<Finding>& findings) {
   const ReachShares reach = ReachOf(input);
-  const std::string nearer =
-      "move the bin nearer to the arm or away from its base (bin.X_BN), or "
-      "take a smaller one; not reached, for instance: " +
+  std::string nearer =
+      "move the bin (bin.X_BN) to where the arm's wrist is bent, or take another one; not reached, "
+      "for instance: " +
       Place(reach.first_missed_N);
-  findings.push_back(Share("bin's floor reached upright", reach.floor_upright, 0.98, 0.5, nearer));
+  // Bin, tray and station together are rarely all wrong.
+  if (reach.floor_upright == 0.0 && reach.tray == 0.0 && reach.station == 0.0) {
+    nearer =
+        "nothing is reached: working_deg of the arm may be of a family that does not get there, or "
+        "X_FE is wrong; else " +
+        nearer;
+  }
+  findings.push_back(Share("bin's floor reached upright", reach.floor_upright, 0.98, 0.1, nearer));
   findings.push_back(
       Share("bin's floor reached leaning by 20 degrees", reach.floor_leaning, 0.90, 0.0, nearer));
   findings.push_back(Share("tray's slots reached", reach.tray, 0.98, 0.25,
@@ -49,10 +58,16 @@ void AddReach(const CellCheckInput& input, std::vector<Finding>& findings) {
 
 void AddCoverage(const CellCheckInput& input, std::vector<Finding>& findings) {
   const CoverageShares coverage = CoverageOf(input);
+  if (input.model.layout.scanner_mount == CellLayout::ScannerMount::kStand) {
+    findings.push_back(Share("bin's floor seen past the waiting arm", 1.0 - coverage.behind_arm,
+                             0.99, 0.5, "move scanner_mount.p_BClear out of the scanner's view"));
+  }
   const bool flange = input.model.layout.scanner_mount == CellLayout::ScannerMount::kFlange;
   const std::string remedy =
-      flange ? "more views ([[scan_pose]], scan.views), or a scanner with a larger field"
-             : "move or turn the scanner (calibration.X_BS), or take one with a larger field";
+      flange
+          ? "more views ([[scan_pose]], scan.views), or a scanner with a larger field"
+          : "move or turn the scanner (scanner_mount.X_BS, calibration.X_BS), or take one with a "
+            "larger field";
   findings.push_back(Share("bin's floor seen by the scanner", coverage.floor, 0.97, 0.5, remedy));
   findings.push_back(Share("tubes along the walls seen", coverage.walls, 0.90, 0.25, remedy));
 }
@@ -68,10 +83,36 @@ void AddHeights(const CellCheckInput& input, std::vector<Finding>& findings) {
 
 }  // namespace
 
+std::vector<Finding> CheckArm(const ArmModel& arm) {
+  constexpr double kAlong_deg = 1.0, kDown_deg = 10.0;
+  const auto between_deg = [](const Vector3& a, const Vector3& b) {
+    return Degrees(std::atan2(a.cross(b).norm(), a.dot(b)));
+  };
+  std::vector<Finding> findings;
+  const Vector3 z_6 = arm.X_6F.linear().col(2), axis_6 = arm.joints[kNumJoints - 1].axis;
+  const double off_deg = std::min(between_deg(z_6, axis_6), between_deg(z_6, -axis_6));
+  findings.push_back({off_deg <= kAlong_deg ? Verdict::kOk : Verdict::kDoubtful,
+                      "flange of the arm",
+                      Number(std::round(off_deg)) + " degrees between its z and the last axis",
+                      "at most " + Number(kAlong_deg),
+                      off_deg <= kAlong_deg ? "" : "z points out of the flange: flange_rpy_deg"});
+  const double down_deg =
+      between_deg(FlangePose(arm, arm.working.q).linear().col(2), -Vector3::UnitZ());
+  findings.push_back(
+      {down_deg <= kDown_deg ? Verdict::kOk : Verdict::kDoubtful, "working posture of the arm",
+       Number(std::round(down_deg)) + " degrees between its flange and straight down",
+       "at most " + Number(kDown_deg),
+       down_deg <= kDown_deg ? "" : "working_deg is a posture with the tool down"});
+  return findings;
+}
+
 std::vector<Finding> CheckCell(const CellCheckInput& input) {
   std::vector<Finding> findings = CheckUnits(input.model, input.bin);
   if (!findings.empty()) return findings;
-  findings = CheckStanding(input.model, input.bin);
+  findings = CheckArm(input.model.arm);
+  for (Finding& finding : CheckStanding(input.model, input.bin)) {
+    findings.push_back(std::move(finding));
+  }
   AddHeights(input, findings);
   if (input.count > 0) findings.push_back(CheckFill(input.bin, input.part, input.count));
   // Where the bin stands in something, reach and coverage of it say nothing.

@@ -34,6 +34,10 @@ std::vector<Finding> CheckStanding(const CellModel& model, const Bin& bin);
 /// Volume of the tubes against the bin's, and their length against its floor.
 Finding CheckFill(const Bin& bin, const Part& part, int count);
 
+/// What the arm's file says against itself: the flange points along the last axis, the working
+/// posture points the tool down. Doubts only.
+std::vector<Finding> CheckArm(const ArmModel& arm);
+
 /// Shares, 0 to 1, of the places where the tool gets to.
 struct ReachShares {
   double floor_upright =
@@ -49,6 +53,9 @@ ReachShares ReachOf(const CellCheckInput& input);
 /// Shares, 0 to 1, of places that camera and projector see past the walls in at least one view.
 struct CoverageShares {
   double floor = 0.0;  ///< Of the floor.
+  /// Of the floor, hidden from camera or projector by the arm where it waits for a scanner on a
+  /// stand.
+  double behind_arm = 0.0;
   double walls = 0.0;  ///< Of tubes that lie along the walls: their crowns.
 };
 CoverageShares CoverageOf(const CellCheckInput& input);

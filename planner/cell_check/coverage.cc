@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "planner/cell_check/cell_check.h"
+#include "planner/motion/motion_planner.h"
+#include "planner/scene_query/box_distance.h"
 
 namespace tubetwin {
 namespace {
@@ -30,6 +32,14 @@ class View {
         p_NCamera_(X_SN_.inverse().translation()),
         p_NProjector_(X_PN_.inverse().translation()) {}
 
+  /// Whether something stands between the place and camera or projector; its boxes in N.
+  bool Hidden(const Vector3& p_N, const std::vector<OrientedBox>& boxes_N) const {
+    return std::any_of(boxes_N.begin(), boxes_N.end(), [&](const OrientedBox& box) {
+      return SegmentBoxDistance(p_N, p_NCamera_, box) <= 0.0 ||
+             SegmentBoxDistance(p_N, p_NProjector_, box) <= 0.0;
+    });
+  }
+
   bool Sees(const Vector3& p_N) const {
     const Vector3 p_S = X_SN_ * p_N, p_P = X_PN_ * p_N;
     if (p_S.z() < spec_.near_half_m || p_S.z() > spec_.far_half_m || p_P.z() <= 0.0) return false;
@@ -48,6 +58,25 @@ class View {
   RigidTransform X_SN_, X_PN_;
   Vector3 p_NCamera_, p_NProjector_;
 };
+
+/// Boxes around what moves, in N, with the arm where it waits for a scanner on a stand; none when
+/// it does not get there.
+std::vector<OrientedBox> WaitingArm(const CellCheckInput& input) {
+  const CellModel& model = input.model;
+  const MotionPlanner planner(model, input.bin);
+  const auto q = planner.Reach(planner.PoseOfEForScan(RigidTransform::Identity()));
+  std::vector<OrientedBox> boxes;
+  if (!q) return boxes;
+  const auto X_BL = LinkPoses(model.arm, *q);
+  const RigidTransform X_NB = input.bin.X_BN.inverse();
+  for (const Shape& shape : MovingShapes(model)) {
+    const RigidTransform X_BBody = shape.link == kFlangeBody
+                                       ? RigidTransform(X_BL[kNumJoints] * model.arm.X_6F)
+                                       : X_BL[shape.link];
+    boxes.push_back({X_NB * X_BBody * shape.X_LinkShape, HalfExtent(shape)});
+  }
+  return boxes;
+}
 
 }  // namespace
 
@@ -80,7 +109,20 @@ CoverageShares CoverageOf(const CellCheckInput& input) {
       walls += at_wall && sees ? 1 : 0;
     }
   }
-  return {static_cast<double>(floor) / (kGrid * kGrid), static_cast<double>(walls) / all_walls};
+  CoverageShares shares;
+  shares.floor = static_cast<double>(floor) / (kGrid * kGrid);
+  shares.walls = static_cast<double>(walls) / all_walls;
+  if (input.model.layout.scanner_mount == CellLayout::ScannerMount::kStand) {
+    const std::vector<OrientedBox> arm_N = WaitingArm(input);
+    int hidden = 0;
+    for (int i = 0; i < kGrid * kGrid; ++i) {
+      const double u = 2.0 * (i % kGrid) / (kGrid - 1) - 1.0;
+      const double v = 2.0 * (i / kGrid) / (kGrid - 1) - 1.0;
+      hidden += views.front().Hidden(Vector3(u * x, v * y, 0), arm_N) ? 1 : 0;
+    }
+    shares.behind_arm = static_cast<double>(hidden) / (kGrid * kGrid);
+  }
+  return shares;
 }
 
 }  // namespace tubetwin

@@ -66,7 +66,8 @@ std::vector<Finding> CheckStanding(const CellModel& model, const Bin& bin) {
                         through ? "reach " + Millimetres(-pair.clearance_m) + " into each other"
                                 : Millimetres(pair.clearance_m) + " apart",
                         "at least " + Millimetres(kApart_m) + " apart",
-                        "move the " + pair.a + " or make it smaller (" + pair.remedy_key + ")"});
+                        "move the " + pair.a + " (" + pair.remedy_key + ") or the " + pair.b +
+                            ", or make one smaller"});
   }
   if (findings.empty()) {
     findings.push_back({Verdict::kOk, "bin, tray, base and stands", "apart", "", ""});

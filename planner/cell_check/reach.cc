@@ -13,7 +13,7 @@ constexpr double kFromWall_m = 0.05;    // at least: nearer, grasps lean or tube
 constexpr double kBesideWall_m = 0.01;  // of the open gripper
 constexpr double kStep_m = 0.05;
 constexpr int kMaxPlaces = 13;  // along each side
-constexpr int kYaws = 4;        // over half a turn: the fingers are alike
+constexpr int kYaws = 8;        // over a whole turn: a scanner at the flange has its side
 constexpr double kLean_deg = 20.0;
 constexpr int kTilts = 12;
 constexpr double kTilt_deg = 45.0;
@@ -60,7 +60,7 @@ class Reach {
     const GripperSpec& gripper = input_.model.gripper;
     const double height_m = radius_m + GraspHeightOverAxis(radius_m, gripper);
     for (int k = 0; k < kYaws; ++k) {
-      const Matrix3 upright = VerticalTool(kPi * k / kYaws);
+      const Matrix3 upright = VerticalTool(2.0 * kPi * k / kYaws);
       for (const double lean : {lean_rad, -lean_rad}) {
         const Matrix3 R = upright * RotX(lean);
         // Leaning, the lower finger would reach deeper.
@@ -108,8 +108,8 @@ class Reach {
       const Matrix3 tilt = Eigen::AngleAxisd(Radians(kTilt_deg), axis).toRotationMatrix();
       bool any = false;
       for (int yaw = 0; yaw < kYaws && !any; ++yaw) {
-        any = Gets(
-            MakeTransform(tilt * VerticalTool(kPi * yaw / kYaws), input_.model.layout.p_BTilt));
+        any = Gets(MakeTransform(tilt * VerticalTool(2.0 * kPi * yaw / kYaws),
+                                 input_.model.layout.p_BTilt));
       }
       gets += any ? 1 : 0;
     }

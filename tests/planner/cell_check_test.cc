@@ -103,6 +103,17 @@ const std::vector<Change>& Broken() {
          c = Case("gp12_stand");
          c.model.layout.p_BClear = Vector3(0.15, -2.9, 0.6);
        }},
+      {"the arm waits in the scanner's view", Verdict::kDoubtful, "past the waiting arm",
+       [](Case& c) {
+         c = Case("gp12_stand");
+         c.model.layout.p_BClear = Vector3(0.90, 0.0, 0.90);
+       }},
+      {"a flange turned by a quarter", Verdict::kDoubtful, "flange of the arm",
+       [](Case& c) {
+         c.model.arm.X_6F = c.model.arm.X_6F * MakeTransform(RotY(kPi / 2), Vector3::Zero());
+       }},
+      {"a working posture with the tool level", Verdict::kDoubtful, "working posture",
+       [](Case& c) { c.model.arm.working.q[4] += kPi / 2; }},
       {"one view of eight", Verdict::kDoubtful, "floor seen",
        [](Case& c) { c.model.layout.scan_poses_BS = {ScanPosesOf(c.model, c.bin).front()}; }},
       {"a station that is out of reach", Verdict::kDoubtful, "station",
@@ -169,7 +180,7 @@ TEST_CASE("Broken cells are found out, each for its own reason and with a remedy
       told = told || (f.verdict >= change.least && f.what.find(change.about) != std::string::npos);
     }
     CHECK(told);
-    CHECK(WorstOf(findings) == change.least);
+    CHECK(WorstOf(findings) >= change.least);
   }
 }
 

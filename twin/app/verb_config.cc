@@ -69,8 +69,9 @@ void AddConfigVerb(CLI::App& app, Common& common) {
   CLI::App* shown = config->add_subcommand(
       "model",
       "Example: tubetwin config model leao2020 > my_cell.toml\n\nPrints a shipped cell, arm, "
-      "gripper, "
-      "wrist or scanner file, to start from; without a name: which there are.");
+      "gripper, wrist or scanner file, to start from; without a name: which there are. Where a "
+      "cell "
+      "and an arm have one name, arms/NAME is the arm's.");
   shown->add_option("name", *model, "Name of a shipped file");
   AddCommonOptions(*shown, common, "", false);
   shown->callback([model, &common] { common.action = [model] { return ShowModel(*model); }; });

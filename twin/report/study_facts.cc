@@ -93,6 +93,8 @@ std::string ScanText(const StudySetup& setup) {
   if (overhead.is_number() && overhead.get<double>() > 0.0) {
     return "one from " + PlainNumber(overhead) + " m over the bin, " + size + " points";
   }
+  const Json fixed = KeyOf(setup, "calibration/X_BS");
+  if (fixed.is_array() && !fixed.empty()) return "one from the stand, " + size + " points";
   const Json views = KeyOf(setup, "scan/views");
   if (!views.is_number()) return kDash;
   const bool all = KeyOf(setup, "scan/rescan_all") == true;
