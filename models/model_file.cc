@@ -7,7 +7,7 @@
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/text.h"
-#include "models/embedded.h"
+#include "models/files/embedded.h"
 
 namespace tubetwin {
 namespace {

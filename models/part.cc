@@ -8,19 +8,19 @@
 #include "models/base/frames.h"
 #include "models/base/json.h"
 #include "models/base/text.h"
-#include "models/embedded.h"
-#include "models/json_visitor.h"
+#include "models/files/embedded.h"
+#include "models/files/json_visitor.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr const char kFolder[] = "parts/", kSuffix[] = ".toml";
+constexpr const char kFolder[] = "parts/", kTomlSuffix[] = ".toml";
 constexpr double kHookRadius_m = 0.05, kShortestEnd_m = 0.02;
 
 // Name of a shipped part from the path of its file; empty for other files.
 std::string NameOfText(const EmbeddedText& text) {
-  if (!text.path.starts_with(kFolder) || !text.path.ends_with(kSuffix)) return "";
-  const std::size_t folder = sizeof kFolder - 1, suffix = sizeof kSuffix - 1;
+  if (!text.path.starts_with(kFolder) || !text.path.ends_with(kTomlSuffix)) return "";
+  const std::size_t folder = sizeof kFolder - 1, suffix = sizeof kTomlSuffix - 1;
   return std::string(text.path.substr(folder, text.path.size() - folder - suffix));
 }
 
@@ -162,7 +162,7 @@ std::vector<std::string> PartNames() {
 }
 
 Part LoadPart(const std::string& name_or_path) {
-  if (name_or_path.ends_with(kSuffix)) {
+  if (name_or_path.ends_with(kTomlSuffix)) {
     ConfigSource source;
     source.AddFile(name_or_path);
     Part part;

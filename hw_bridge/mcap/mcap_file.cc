@@ -5,8 +5,8 @@
 
 #include "hw_bridge/recording/byte_stream.h"
 #include "hw_bridge/recording/crc32.h"
+#include "models/base/cloud/zstd_frame.h"
 #include "models/base/error.h"
-#include "models/base/zstd_frame.h"
 
 namespace tubetwin {
 namespace {

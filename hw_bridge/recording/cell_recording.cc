@@ -7,8 +7,8 @@
 #include "hw_bridge/recording/cloud_packing.h"
 #include "hw_bridge/recording/recording_blocks.h"
 #include "hw_bridge/recording/recording_header.h"
+#include "models/base/cloud/zstd_frame.h"
 #include "models/base/error.h"
-#include "models/base/zstd_frame.h"
 
 namespace tubetwin {
 namespace {

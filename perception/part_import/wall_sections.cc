@@ -12,8 +12,8 @@ namespace {
 constexpr double kAway = 0.7;   ///< Cosine between a wall's normal and the way out to it.
 constexpr double kAlong = 0.5;  ///< Largest cosine of a wall's normal with the axis.
 constexpr double kStep = 0.25, kMaxAxisNodes = 400.0;  ///< Between sections: radii, and how many.
-constexpr double kReach = 1.6;                     ///< Wall lies within so many radii.
-constexpr double kFlangeReach = 3.0;               ///< At the ends.
+constexpr double kReach = 1.6;                         ///< Wall lies within so many radii.
+constexpr double kFlangeReach = 3.0;                   ///< At the ends.
 /// A section with less wall than this does not place a node; one with less than half ends the tube.
 constexpr double kSeen = 0.6, kEnd = 0.5;
 /// Larger moves than this, in radii, are another thing's wall.

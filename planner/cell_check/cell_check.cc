@@ -41,9 +41,9 @@ void AddReach(const CellCheckInput& input, std::vector<Finding>& findings) {
         "X_FE is wrong; else " +
         nearer;
   }
-  findings.push_back(Share("bin's floor reached upright", reach.floor_upright, 0.98, 0.1, nearer));
+  findings.push_back(Share("bin's floor reached upright", reach.floor_upright, 0.70, 0.1, nearer));
   findings.push_back(
-      Share("bin's floor reached leaning by 20 degrees", reach.floor_leaning, 0.90, 0.0, nearer));
+      Share("bin's floor reached leaning by 20 degrees", reach.floor_leaning, 0.85, 0.0, nearer));
   findings.push_back(Share("tray's slots reached", reach.tray, 0.98, 0.25,
                            "move the tray (tray.X_BT) or make its zone smaller (tray.zone_m)"));
   findings.push_back(Share("tilts of 45 degrees at the station", reach.station, 0.70, 0.0,

@@ -32,8 +32,8 @@ struct CycleConfig : PathConfig {
   void Visit(ConfigVisitor& v);
 };
 
-/// Where a round looks from, X_BS, to see tubes of `radius_m`: at least one. Throws Error(kConfig) when an overhead view is
-/// asked of a scanner on a stand.
+/// Where a round looks from, X_BS, to see tubes of `radius_m`: at least one. Throws Error(kConfig)
+/// when an overhead view is asked of a scanner on a stand.
 std::vector<RigidTransform> ScanPoses(const ScanConfig& config, const CellModel& model,
                                       const Bin& bin, double radius_m);
 

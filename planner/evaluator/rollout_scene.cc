@@ -97,7 +97,7 @@ RolloutScene::RolloutScene(const TubeScene& scene, const Part& part, const Bin& 
 RolloutScene::RolloutScene(const std::vector<PileTube>& tubes, const Part& part, const Bin& bin,
                            double friction, double bending_stiffness_Nm2,
                            const EvaluatorOptions& options)
-    : bin_(bin) {
+    : bin_(bin), pad_width_m_(options.gripper.spec.pad_width_m) {
   const EvaluatorConfig& config = options.config;
   EngineOptions engine;
   engine.timestep_s = config.timestep_s;
@@ -261,7 +261,7 @@ RigidTransform RolloutScene::Grip(int index, double share, mjModel& model, mjDat
   const TubeBody::Attachment at = tube.AttachmentAt(share * length_m);
   const RigidTransform X_NLink = BodyPose(data, tube.bodies()[at.link]);
   const Polyline line = tube.Centerline_N(data);
-  const Vector3 tangent = TangentAt(line, share * Length(line), GripperSpec{}.pad_width_m);
+  const Vector3 tangent = TangentAt(line, share * Length(line), pad_width_m_);
   RigidTransform X_NHand = Translation(X_NLink * at.p_Body);
   // Of the two equal yaws the smaller, so that motions may turn it either way.
   double yaw = std::atan2(tangent.y(), tangent.x());

@@ -64,6 +64,7 @@ class RolloutScene {
   MjModel model_;
   std::vector<TubeBody> tubes_;
   Bin bin_;
+  double pad_width_m_;
   int first_axis_qpos_ = 0, first_actuator_ = 0, first_weld_ = 0, hand_ = 0;
   std::vector<int> weld_offset_;  ///< Index of every tube's first weld.
   StepStatus status_ = StepStatus::kOk;

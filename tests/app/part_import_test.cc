@@ -4,8 +4,8 @@
 
 #include "models/base/files.h"
 #include "models/base/json.h"
-#include "models/cantilever.h"
 #include "models/part.h"
+#include "models/part_fit/cantilever.h"
 #include "scenes/pile.h"
 #include "tests/support/catch.h"
 #include "tests/support/program.h"
@@ -185,7 +185,7 @@ TEST_CASE("A mass comes from a density and the mesh's volume or a wall", "[app]"
     CheckRefused(folder, "part import --out q.toml " + arguments, 64, said);
   };
   refused("open.stl --density 1000", "--wall-mm");
-  refused("pipe.stl --density 1000 --wall-mm 3", "wall of 2 mm itself");
+  refused("pipe.stl --density 1000 --wall-mm 3", "wall of 1.99 mm itself");
   refused("rod.stl --density 1000 --wall-mm 11", "radius is");
   refused("rod.stl --density 1000 --mass 0.1", "give one of them");
   refused("rod.stl --wall-mm 2", "needs --density");

@@ -154,6 +154,7 @@ TEST_CASE("A missing recording ends with 66, a damaged one with 65 and the byte"
                "text.rec.zst: byte 0: no cell recording");
   {
     CellRecordingHeader header;
+    header.model = LoadCellModel("leao2020");
     header.config_toml = "sead = 1\n";
     CellRecordingWriter writer(folder / "config.rec.zst", header);
     writer.Finish("");

@@ -1,9 +1,9 @@
 #include "models/base/cloud/packed_cloud.h"
 
+#include "models/base/cloud/zstd_frame.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/random.h"
-#include "models/base/zstd_frame.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

@@ -55,8 +55,9 @@ TEST_CASE("A pick spends its time where its steps are", "[unit]") {
       const double seconds = attempt.phases_s.*named.phase;
       if (named.phase == &AttemptReport::Phases::recover) {
         CHECK(seconds == 0.0);  // Nothing went wrong.
-      } else {
-        CHECK(seconds > 0.0);
+      } else if (named.phase != &AttemptReport::Phases::look &&
+                 named.phase != &AttemptReport::Phases::close) {
+        CHECK(seconds > 0.0);  // Scanner and fingers of the fake cell are done at once.
       }
     }
     // The waits for the load and the tare before it.

@@ -17,6 +17,7 @@ struct Looks {
     CycleMoments::Look look;
     look.q = solutions.front();
     look.fingers_in_use = true;
+    look.fingers.opening_m = look.fingers.requested_m = PaperCell().gripper.stroke_m;
     return look;
   }
   Bin bin;

@@ -3,7 +3,7 @@
 #include "models/arm/arm.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
-#include "models/embedded.h"
+#include "models/files/embedded.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

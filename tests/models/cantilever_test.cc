@@ -1,4 +1,4 @@
-#include "models/cantilever.h"
+#include "models/part_fit/cantilever.h"
 
 #include <cmath>
 

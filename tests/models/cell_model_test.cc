@@ -4,7 +4,7 @@
 
 #include "models/base/error.h"
 #include "models/base/files.h"
-#include "models/embedded.h"
+#include "models/files/embedded.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

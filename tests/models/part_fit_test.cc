@@ -1,4 +1,4 @@
-#include "models/part_fit.h"
+#include "models/part_fit/part_fit.h"
 
 #include <cmath>
 

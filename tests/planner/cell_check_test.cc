@@ -46,6 +46,7 @@ RigidTransform At(double x, double y, double z, double yaw_deg = 90.0) {
   return MakeTransform(RotZ(Radians(yaw_deg)), Vector3(x, y, z));
 }
 
+// Long function: a table.
 const std::vector<Change>& Broken() {
   static const std::vector<Change> changes = {
       {"bin over the tray", Verdict::kImpossible, "bin and tray",

@@ -1,6 +1,6 @@
 // What a part is judged against is what the rooms that own the figures say.
 
-#include "models/part_fit.h"
+#include "models/part_fit/part_fit.h"
 #include "models/physics.h"
 #include "perception/joining/bridges.h"
 #include "planner/motion/path_config.h"

@@ -9,10 +9,11 @@
 #include "hw_bridge/mcap/mcap_export.h"
 #include "hw_bridge/recording/byte_stream.h"
 #include "hw_bridge/recording/crc32.h"
+#include "models/base/cloud/zstd_frame.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
-#include "models/base/zstd_frame.h"
 #include "tests/support/catch.h"
+#include "tests/support/paper_cell.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
@@ -170,7 +171,9 @@ TEST_CASE("An MCAP file has the specified records, places and check sums", "[uni
 TEST_CASE("An export of damage or to nowhere leaves no file", "[unit]") {
   const TemporaryFolder folder;
   {
-    CellRecordingWriter writer(folder / "r", {});
+    CellRecordingHeader header;
+    header.model = PaperCell();
+    CellRecordingWriter writer(folder / "r", header);
     writer.Add(TimeAdvanced{kControlPeriod, kControlPeriod});
     writer.Finish("");
   }

@@ -48,7 +48,7 @@ TEST_CASE("Shadows alone empty what the projector does not reach", "[render]") {
   const OrganizedCloud with = Cast(geometry, Exact()), without = Cast(geometry, lit);
   // Everything is hit; so is what lies outside of the projector's frustum.
   CHECK(CountValid(without) == static_cast<int>(without.size()));
-  const Vector3 p_SP = ProjectorPose({}).translation();
+  const Vector3 p_SP = ProjectorPose(PaperCell().scanner).translation();
   for (std::size_t i = 0; i < with.size(); i += 7) {
     if (IsValid(with.p_SP[i])) {
       CHECK(with.p_SP[i] == without.p_SP[i]);
@@ -56,7 +56,7 @@ TEST_CASE("Shadows alone empty what the projector does not reach", "[render]") {
     }
     // An empty pixel is shaded by the tube, turned away, or outside of 47.5 x 36 degrees.
     const Vector3 p = without.p_SP[i].cast<double>();
-    const Vector3 p_P = ProjectorPose({}).inverse() * p;
+    const Vector3 p_P = ProjectorPose(PaperCell().scanner).inverse() * p;
     const bool outside = std::abs(p_P.x()) > std::tan(Radians(23.75)) * p_P.z() - 1e-5 ||
                          std::abs(p_P.y()) > std::tan(Radians(18.0)) * p_P.z() - 1e-5;
     bool crosses = false;

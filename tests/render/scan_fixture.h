@@ -23,7 +23,8 @@ struct Incidence {
   double camera, projector, mirror;
   Incidence(const Vector3& p, const Vector3& normal) {
     const Vector3 to_camera = -p.normalized();
-    const Vector3 to_projector = (ProjectorPose({}).translation() - p).normalized();
+    const Vector3 to_projector =
+        (ProjectorPose(PaperCell().scanner).translation() - p).normalized();
     camera = normal.dot(to_camera);
     projector = normal.dot(to_projector);
     mirror = normal.dot((to_camera + to_projector).normalized());

@@ -4,8 +4,8 @@
 #include "tests/report/report_fixture.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
-#include "twin/report/part_picture.h"
-#include "twin/report/study_facts.h"
+#include "twin/report/front/part_picture.h"
+#include "twin/report/front/study_facts.h"
 #include "twin/report/write_report.h"
 
 namespace tubetwin {

@@ -1,4 +1,4 @@
-#include "twin/report/time_shares.h"
+#include "twin/report/front/time_shares.h"
 
 #include "tests/campaign/fake_rounds.h"
 #include "tests/support/catch.h"

@@ -60,8 +60,8 @@ TEST_CASE("holding torques are those of the arm's masses in closed form") {
     }
     sum +=
         PaperCell().wrist.mass_kg * (X_BF * Vector3(0, 0, 0.5 * layout.X_FK.translation().z())).z();
-    const Vector3 p_FScanner =
-        layout.X_FS * (HousingPose({}) * Vector3(0, 0, PaperCell().scanner.mass_centre_m));
+    const Vector3 p_FScanner = layout.X_FS * (HousingPose(PaperCell().scanner) *
+                                              Vector3(0, 0, PaperCell().scanner.mass_centre_m));
     sum += PaperCell().scanner.mass_kg * (X_BF * p_FScanner).z();
     // The tool's centre of mass as the world has it now; its moment is small.
     const CellWorld& world = bench.impl().world;

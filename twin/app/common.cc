@@ -41,6 +41,8 @@ void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc
 void RequireSoundCell(const Scenario& scenario, const Common& common) {
   const std::vector<Finding> cell = CheckScenario(scenario);
   const std::vector<Finding> part = CheckScenarioPart(scenario);
+  RequirePossible(cell);
+  RequirePossible(part, "the part", ErrorKind::kBadData);
   for (const auto* findings : {&cell, &part}) {
     for (const Finding& finding : *findings) {
       if (finding.verdict != Finding::Verdict::kDoubtful) continue;
@@ -48,8 +50,6 @@ void RequireSoundCell(const Scenario& scenario, const Common& common) {
                       "; " + finding.remedy);
     }
   }
-  RequirePossible(cell);
-  RequirePossible(part, "the part", ErrorKind::kBadData);
 }
 
 Scenario LoadScenario(const std::vector<std::string>& files, const Common& common,

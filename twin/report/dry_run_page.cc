@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "models/base/json.h"
+#include "twin/report/front/part_picture.h"
 #include "twin/report/page.h"
-#include "twin/report/part_picture.h"
 #include "twin/report/parts.h"
 #include "twin/report/text.h"
 

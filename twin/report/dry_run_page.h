@@ -9,7 +9,7 @@
 #include "models/bin.h"
 #include "perception/scene/tube_scene.h"
 #include "planner/pick/pick_plan.h"
-#include "twin/report/study_facts.h"
+#include "twin/report/front/study_facts.h"
 
 namespace tubetwin {
 

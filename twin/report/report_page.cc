@@ -1,7 +1,7 @@
 #include "twin/report/report_page.h"
 
 #include "models/base/json.h"
-#include "twin/report/front_page.h"
+#include "twin/report/front/front_page.h"
 #include "twin/report/page.h"
 #include "twin/report/parts.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "twin/campaign/campaign_summary.h"
-#include "twin/report/study_setup.h"
+#include "twin/report/front/study_setup.h"
 #include "twin/report/text.h"
 
 namespace tubetwin {

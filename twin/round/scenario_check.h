@@ -6,7 +6,7 @@
 #include "models/base/error.h"
 #include "models/base/finding.h"
 #include "models/base/json_fwd.h"
-#include "models/part_fit.h"
+#include "models/part_fit/part_fit.h"
 #include "twin/round/scenario.h"
 
 namespace tubetwin {

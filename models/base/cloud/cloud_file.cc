@@ -12,10 +12,10 @@
 #include <sstream>
 #include <utility>
 
+#include "models/base/cloud/zstd_frame.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/text.h"
-#include "models/base/zstd_frame.h"
 
 namespace tubetwin {
 namespace {

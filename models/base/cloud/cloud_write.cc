@@ -3,10 +3,10 @@
 #include "models/base/cloud/cloud.h"
 #include "models/base/cloud/cloud_file.h"
 #include "models/base/cloud/packed_cloud.h"
+#include "models/base/cloud/zstd_frame.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/text.h"
-#include "models/base/zstd_frame.h"
 
 namespace tubetwin {
 namespace {

@@ -226,7 +226,8 @@ ConfigSource& ConfigSource::operator=(ConfigSource&&) noexcept = default;
 
 void ConfigSource::AddFile(const std::string& path) {
   Merge(impl_->layers,
-        config_internal::ParseLayer(ReadFile(path), path, std::filesystem::path(path).parent_path().string()));
+        config_internal::ParseLayer(ReadFile(path), path,
+                                    std::filesystem::path(path).parent_path().string()));
 }
 
 void ConfigSource::AddText(const std::string& toml, const std::string& name) {

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "twin/report/chart.h"
-#include "twin/report/front_page.h"
+#include "twin/report/front/front_page.h"
+#include "twin/report/front/time_shares.h"
 #include "twin/report/parts.h"
-#include "twin/report/time_shares.h"
 
 namespace tubetwin {
 namespace {

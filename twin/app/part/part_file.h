@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "models/cantilever.h"
 #include "models/part.h"
+#include "models/part_fit/cantilever.h"
 #include "perception/part_import/tube_of_mesh.h"
 
 namespace tubetwin {

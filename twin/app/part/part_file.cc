@@ -1,4 +1,4 @@
-#include "twin/app/part_file.h"
+#include "twin/app/part/part_file.h"
 
 #include <algorithm>
 #include <cctype>

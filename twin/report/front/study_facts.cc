@@ -1,4 +1,4 @@
-#include "twin/report/study_facts.h"
+#include "twin/report/front/study_facts.h"
 
 #include <cstdio>
 

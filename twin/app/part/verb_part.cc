@@ -8,10 +8,10 @@
 #include "models/base/json.h"
 #include "models/base/text.h"
 #include "models/mesh/mesh.h"
-#include "models/part_fit.h"
+#include "models/part_fit/part_fit.h"
 #include "perception/part_import/tube_of_mesh.h"
 #include "twin/app/common.h"
-#include "twin/app/part_file.h"
+#include "twin/app/part/part_file.h"
 #include "twin/render/tube_fit_picture.h"
 #include "twin/round/scenario_check.h"
 

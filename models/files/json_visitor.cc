@@ -1,4 +1,4 @@
-#include "models/json_visitor.h"
+#include "models/files/json_visitor.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "twin/report/part_picture.h"
+#include "twin/report/front/part_picture.h"
 
 #include <algorithm>
 

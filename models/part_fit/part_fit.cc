@@ -1,11 +1,11 @@
-#include "models/part_fit.h"
+#include "models/part_fit/part_fit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "models/base/frames.h"
-#include "models/cantilever.h"
+#include "models/part_fit/cantilever.h"
 
 namespace tubetwin {
 namespace {

@@ -1,4 +1,4 @@
-#include "models/base/zstd_frame.h"
+#include "models/base/cloud/zstd_frame.h"
 
 #include <memory>
 

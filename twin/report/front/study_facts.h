@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "twin/report/study_setup.h"
+#include "twin/report/front/study_setup.h"
 
 namespace tubetwin {
 

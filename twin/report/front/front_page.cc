@@ -1,11 +1,11 @@
-#include "twin/report/front_page.h"
+#include "twin/report/front/front_page.h"
 
 #include <algorithm>
 #include <set>
 
-#include "twin/report/part_picture.h"
+#include "twin/report/front/part_picture.h"
+#include "twin/report/front/study_facts.h"
 #include "twin/report/parts.h"
-#include "twin/report/study_facts.h"
 
 namespace tubetwin {
 namespace {

@@ -1,4 +1,4 @@
-#include "twin/report/study_setup.h"
+#include "twin/report/front/study_setup.h"
 
 #include <filesystem>
 
