@@ -178,6 +178,8 @@ MeshTube Judge(MeshTube tube, const std::vector<Polyline>& axes, const std::vect
     refuse(MeshVerdict::kBranches, "it branches: besides an axis of " + Mm(tube.length_m) +
                                        " there is one of " + Mm(Length(axes[1])) +
                                        "; a tube has one axis and two ends");
+  } else if (RunsIntoItself(tube)) {
+    refuse(MeshVerdict::kClosed, "it is a ring; a tube has two ends");
   } else if (tube.radius_spread > kLargestSpread) {
     refuse(MeshVerdict::kRadiusSpread, "its radius, " + Mm(r) + ", spreads by " +
                                            Percent(tube.radius_spread) +
@@ -185,8 +187,6 @@ MeshTube Judge(MeshTube tube, const std::vector<Polyline>& axes, const std::vect
   } else if (tube.length_m < kShortest * r) {
     refuse(MeshVerdict::kNoAxis, "its axis is " + Mm(tube.length_m) + " long at a radius of " +
                                      Mm(r) + "; a tube is at least four radii long");
-  } else if (RunsIntoItself(tube)) {
-    refuse(MeshVerdict::kClosed, "it is a ring; a tube has two ends");
   } else if (const double outside = ShareOutside(pieces.front(), tube); outside > kMaxOutside) {
     refuse(MeshVerdict::kOtherSurface, Percent(outside) +
                                            " of its surface lies outside of the tube of radius " +

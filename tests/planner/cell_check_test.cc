@@ -46,7 +46,7 @@ RigidTransform At(double x, double y, double z, double yaw_deg = 90.0) {
   return MakeTransform(RotZ(Radians(yaw_deg)), Vector3(x, y, z));
 }
 
-// Long function: a table.
+// Long function: it is one table of cells, each with what is wrong about it.
 const std::vector<Change>& Broken() {
   static const std::vector<Change> changes = {
       {"bin over the tray", Verdict::kImpossible, "bin and tray",
@@ -125,7 +125,7 @@ const std::vector<Change>& Broken() {
          c.count = 18;
        }},
       {"a bin half out of reach", Verdict::kDoubtful, "floor reached upright",
-       [](Case& c) { c.bin.X_BN = At(0.80, 0, 0.10); }},
+       [](Case& c) { c.bin.X_BN = At(1.05, 0, 0.10); }},
   };
   return changes;
 }
