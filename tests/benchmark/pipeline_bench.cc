@@ -99,8 +99,8 @@ void BM_Perceive(benchmark::State& state) {
   std::vector<OrganizedCloud> views;
   const Bin bin = SevenTubes().bin;
   for (const RigidTransform& X_BS : ScanPosesOf(PaperCell(), bin)) {
-    views.push_back(
-        CastScan(Geometry(), X_BS, {}, RandomStream(1, views.size(), "bench"), Parallelism::All()));
+    views.push_back(CastScan(Geometry(), X_BS, PaperScan(), RandomStream(1, views.size(), "bench"),
+                             Parallelism::All()));
     views.back().X_NS = bin.X_BN.inverse() * X_BS;
   }
   for (auto _ : state) {
