@@ -158,7 +158,8 @@ JointVector ReadJoints(const Target& t, double psi, const Triangle& s, bool flip
   const Vector3 h_3 = R_B3.transpose() * s.h;
   q[3] = std::atan2(-h_3.x(), h_3.y());
   q[5] = kPi / 2 - psi;
-  const Matrix3 R_45 = (R_B3 * RotZ(q[3])).transpose() * t.R_B6 * RotZ(-q[5]);
+  const Matrix3 R_B4 = R_B3 * RotZ(q[3]);
+  const Matrix3 R_45 = R_B4.transpose() * t.R_B6 * RotZ(-q[5]);
   q[4] = -std::atan2(R_45(0, 2), R_45(2, 2));
   return q;
 }

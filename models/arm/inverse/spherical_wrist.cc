@@ -37,7 +37,8 @@ void AppendWrists(const ArmModel& arm, const JointVector& q, const Matrix3& R_36
     full[3] = AngleAbout(a4, R_5 * a6, R_36 * a6);
     full[4] = q5;
     const Matrix3 R_4 = Eigen::AngleAxisd(full[3], a4).toRotationMatrix();
-    const Matrix3 R_6 = (R_4 * R_5).transpose() * R_36;
+    const Matrix3 R_45 = R_4 * R_5;
+    const Matrix3 R_6 = R_45.transpose() * R_36;
     const Vector3 side = a6.unitOrthogonal();
     full[5] = AngleAbout(a6, side, R_6 * side);
     out.push_back(full);
