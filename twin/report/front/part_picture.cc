@@ -63,7 +63,7 @@ std::string Head(double width, double height, const std::string& label) {
 
 /// A bar of round length with its name.
 std::string MeasureSvg(double longest_m, double scale, double y) {
-  const double step_m = NiceStep(2.4 * longest_m);  // A fifth to a half of the longest.
+  const double step_m = NiceStep(1.2 * longest_m);  // A fifth to a half of the longest.
   const double end = kMargin + scale * step_m;
   return "<line class=\"measure\" x1=\"" + Fixed(kMargin, 1) + "\" x2=\"" + Fixed(end, 1) +
          "\" y1=\"" + Fixed(y, 1) + "\" y2=\"" + Fixed(y, 1) + "\"/><text class=\"tick\" x=\"" +
