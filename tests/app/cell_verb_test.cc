@@ -62,6 +62,9 @@ TEST_CASE("A shipped cell is printed, and is a cell of one's own", "[app]") {
   CHECK(RunProgram(folder, "config check round.toml").code == 0);
   CHECK(RunProgram(folder, "config check --set cell.model=cells/my.toml").code == 0);
   CheckRefused(folder, "config check --set cell.model=my.toml", 66, "my.toml: no such file");
+  CheckRefused(folder, "config check cells/my.toml", 78,
+               "use it by --set cell.model=cells/my.toml");
+  CheckRefused(folder, "run --cell cells/my.toml --out o", 78, "is a cell model");
   CheckRefused(folder, "config model leao2002", 66, "nearest is 'leao2020'");
   CheckRefused(folder, "config check --set cell.model=leao2002", 66, "leao2020");
 }
