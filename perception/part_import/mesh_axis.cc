@@ -1,13 +1,13 @@
 #include "perception/part_import/mesh_axis.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
 
 #include "perception/fragment/fragments.h"
 #include "perception/fragment/refine.h"
+#include "perception/part_import/tube_end.h"
 
 namespace tubetwin {
 namespace {
@@ -19,6 +19,7 @@ constexpr double kStep_m = 0.0025;  ///< Between nodes of the finished axis.
 constexpr double kMaxNodes = 400.0;
 constexpr double kPointsPerNode = 60.0;
 constexpr double kLongestGap_m = 2.5 * kRadius_m;
+constexpr double kEndWindow_m = 0.8 * kRadius_m;  ///< Over which an end's direction is taken.
 constexpr double kShortestAxis_m = 1.5 * kRadius_m;
 
 /// Rotation onto the directions in which the points spread most and least: the grid of axis points
@@ -47,12 +48,6 @@ std::vector<SurfacePoint> Scaled(const std::vector<MeshPoint>& surface, const Ma
   return out;
 }
 
-Vector3 OutwardAt(const Polyline& line, bool first) {
-  const double window_m = std::min(0.8 * kRadius_m, Length(line));
-  return first ? (line.front() - PointAt(line, window_m)).normalized()
-               : (line.back() - PointAt(line, Length(line) - window_m)).normalized();
-}
-
 /// Joins pieces end to end, nearest ends first, where they look at one another.
 std::vector<Polyline> Join(std::vector<Polyline> lines) {
   for (;;) {
@@ -66,7 +61,9 @@ std::vector<Polyline> Join(std::vector<Polyline> lines) {
           const Vector3& p = fi ? lines[i].front() : lines[i].back();
           const Vector3& q = fk ? lines[k].front() : lines[k].back();
           if ((p - q).norm() >= nearest) continue;
-          if (OutwardAt(lines[i], fi).dot(OutwardAt(lines[k], fk)) > -0.3) continue;
+          if (OutwardAt(lines[i], fi, kEndWindow_m).dot(OutwardAt(lines[k], fk, kEndWindow_m)) >
+              -0.3)
+            continue;
           nearest = (p - q).norm();
           a = i, b = k, first_of_a = fi, first_of_b = fk;
         }
@@ -80,34 +77,13 @@ std::vector<Polyline> Join(std::vector<Polyline> lines) {
   }
 }
 
-/// Moves an end to where the axis points stop. Ends that are cut askew are measured in their
-/// middle: the furthest axis point counts in each of eight sectors.
-void MoveEnd(Polyline& line, bool first, const std::vector<SurfacePoint>& points) {
-  constexpr double kBeside_m = 0.2 * kRadius_m;
-  constexpr double kBack_m = 0.8 * kRadius_m, kAhead_m = 1.2 * kRadius_m;
-  const Vector3 end = first ? line.front() : line.back();
-  const Vector3 t = OutwardAt(line, first);
-  const Vector3 u = t.unitOrthogonal(), v = t.cross(u);
-  std::array<double, 8> furthest;
-  furthest.fill(-kBack_m);
+std::vector<AxisPoint> AxisPointsOf(const std::vector<SurfacePoint>& points) {
+  std::vector<AxisPoint> out;
+  out.reserve(points.size());
   for (const SurfacePoint& point : points) {
-    const Vector3 d = point.a_N.cast<double>() - end;
-    const double s = d.dot(t);
-    if (s < -kBack_m || s > kAhead_m || (d - s * t).norm() > kBeside_m) continue;
-    const Vector3 n = point.n_N.cast<double>();
-    const double angle = std::atan2(n.dot(v), n.dot(u)) + kPi;
-    double& sector_m = furthest[static_cast<std::size_t>(std::min(7.0, angle / (2.0 * kPi) * 8.0))];
-    sector_m = std::max(sector_m, s);
+    out.push_back({point.a_N.cast<double>(), point.n_N.cast<double>()});
   }
-  std::sort(furthest.begin(), furthest.end());
-  const double move = 0.5 * (furthest[3] + furthest[4]);
-  // Nodes behind the new end go.
-  while (line.size() > 2) {
-    const Vector3& next = first ? line[1] : line[line.size() - 2];
-    if ((next - end).dot(t) < move - 0.5 * kStep_m) break;
-    line.erase(first ? line.begin() : line.end() - 1);
-  }
-  (first ? line.front() : line.back()) = end + move * t;
+  return out;
 }
 
 /// Points of the outer wall around the line, at most some per node.
@@ -129,14 +105,21 @@ std::vector<SurfacePoint> WallOf(const Polyline& line, const std::vector<Surface
 /// Refines the line and takes it to its ends.
 void Finish(Polyline& line, const std::vector<SurfacePoint>& points) {
   constexpr int kTimes = 3;
+  const std::vector<AxisPoint> axis_points = AxisPointsOf(points);
+  const auto move_ends = [&] {
+    for (const bool first : {true, false}) {
+      MoveEnd(line, first, OutwardAt(line, first, kEndWindow_m), axis_points, kRadius_m,
+              0.2 * kRadius_m, kStep_m);
+    }
+  };
   for (int i = 0; i < kTimes; ++i) {
-    for (const bool first : {true, false}) MoveEnd(line, first, points);
+    move_ends();
     line = Resample(line, std::max(kStep_m, Length(line) / kMaxNodes));
     const std::vector<SurfacePoint> wall = WallOf(line, points);
     if (wall.empty()) return;
     RefineCurve(line, wall, kRadius_m);
   }
-  for (const bool first : {true, false}) MoveEnd(line, first, points);
+  move_ends();
 }
 
 }  // namespace

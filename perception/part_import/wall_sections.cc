@@ -1,10 +1,11 @@
 #include "perception/part_import/wall_sections.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
+
+#include "perception/part_import/tube_end.h"
 
 namespace tubetwin {
 namespace {
@@ -59,13 +60,6 @@ bool CutFace(const Vector3 corner[3], const Vector3& p, const Vector3& t, Vector
   return found == 2;
 }
 
-/// Direction out of the line at one of its ends.
-Vector3 OutwardOf(const Polyline& line, bool first, double window_m) {
-  const double length = Length(line), s = std::min(window_m, length);
-  return first ? (line.front() - PointAt(line, s)).normalized()
-               : (line.back() - PointAt(line, length - s)).normalized();
-}
-
 /// One round: nodes every step go into their sections' centres; those without are left out where
 /// others carry the line on.
 Polyline Centred(const WallCutter& cutter, const Polyline& rough, double radius_m,
@@ -98,7 +92,7 @@ Polyline Centred(const WallCutter& cutter, const Polyline& rough, double radius_
 std::optional<WallSection> SectionBeyond(const WallCutter& cutter, const Vector3& next,
                                          const Vector3& t, double radius_m) {
   for (const double reach : {kReach, kFlangeReach}) {
-    const auto section = cutter.Cut(next, t, reach * radius_m);
+    auto section = cutter.Cut(next, t, reach * radius_m);
     if (!section || section->seen < kEnd || section->radius_m < kThinnest * radius_m) continue;
     // Where an askew end leaves wall on one side only, the circle is less certain than the line.
     const double drift = (section->centre - next).norm();
@@ -116,7 +110,7 @@ void Prolong(const WallCutter& cutter, double radius_m, bool first, Polyline& li
   if (first) std::reverse(line.begin(), line.end());
   int without = 0;
   for (int i = 0; i < steps && without < kSteep; ++i) {
-    const Vector3 t = OutwardOf(line, false, radius_m);
+    const Vector3 t = OutwardAt(line, false, radius_m);
     const Vector3 next = line.back() + (without + 1) * step_m * t;
     const auto section = SectionBeyond(cutter, next, t, radius_m);
     without = section ? 0 : without + 1;
@@ -137,7 +131,7 @@ bool IsRounded(const std::vector<MeshPoint>& points, const Vector3& end, const V
 
 /// Moves an end to where half of the way around is wall.
 void MoveToCut(const WallCutter& cutter, double radius_m, bool first, Polyline& line) {
-  const Vector3 t = OutwardOf(line, first, radius_m);
+  const Vector3 t = OutwardAt(line, first, radius_m);
   Vector3& end = first ? line.front() : line.back();
   double low = 0.0, high = kStep * radius_m;
   for (int i = 0; i < 12; ++i) {
@@ -160,32 +154,12 @@ double RadiusNear(const WallCutter& cutter, const Polyline& line, bool first, do
   return radius_m;
 }
 
-/// Moves a rounded end to where the axes of the surface's points stop; the furthest point counts in
-/// each of eight sectors.
-void MoveToCentre(Polyline& line, bool first, const std::vector<MeshPoint>& points, double wall_m,
-                  double radius_m) {
-  const double beside_m = 0.2 * wall_m, back_m = 0.8 * radius_m, ahead_m = 1.2 * radius_m;
-  const Vector3 end = first ? line.front() : line.back();
-  const Vector3 t = OutwardOf(line, first, radius_m);
-  const Vector3 u = t.unitOrthogonal(), v = t.cross(u);
-  std::array<double, 8> furthest;
-  furthest.fill(-back_m);
-  for (const MeshPoint& point : points) {
-    const Vector3 d = point.p - wall_m * point.n - end;
-    const double s = d.dot(t);
-    if (s < -back_m || s > ahead_m || (d - s * t).norm() > beside_m) continue;
-    const double angle = std::atan2(point.n.dot(v), point.n.dot(u)) + kPi;
-    double& sector_m = furthest[static_cast<std::size_t>(std::min(7.0, angle / (2.0 * kPi) * 8.0))];
-    sector_m = std::max(sector_m, s);
-  }
-  std::sort(furthest.begin(), furthest.end());
-  const double move = 0.5 * (furthest[3] + furthest[4]);
-  while (line.size() > 2) {
-    const Vector3& next = first ? line[1] : line[line.size() - 2];
-    if ((next - end).dot(t) < move - 0.5 * kStep * radius_m) break;
-    line.erase(first ? line.begin() : line.end() - 1);
-  }
-  (first ? line.front() : line.back()) = end + move * t;
+/// The points as points of an axis, so far inside.
+std::vector<AxisPoint> AxisPointsOf(const std::vector<MeshPoint>& points, double wall_m) {
+  std::vector<AxisPoint> out;
+  out.reserve(points.size());
+  for (const MeshPoint& point : points) out.push_back({point.p - wall_m * point.n, point.n});
+  return out;
 }
 
 }  // namespace
@@ -257,11 +231,15 @@ SectionedAxis CentreInSections(const WallCutter& cutter, const std::vector<MeshP
   for (const bool first : {true, false}) {
     Prolong(cutter, radius_m, first, out.line);
     MoveToCut(cutter, radius_m, first, out.line);
-    const Vector3 t = OutwardOf(out.line, first, radius_m);
+    const Vector3 t = OutwardAt(out.line, first, radius_m);
     if (!IsRounded(points, first ? out.line.front() : out.line.back(), t, radius_m)) continue;
     const double wall_m = RadiusNear(cutter, out.line, first, radius_m);
     // A second time with the direction that the first left.
-    for (int i = 0; i < 2; ++i) MoveToCentre(out.line, first, points, wall_m, radius_m);
+    const std::vector<AxisPoint> axis_points = AxisPointsOf(points, wall_m);
+    for (int i = 0; i < 2; ++i) {
+      MoveEnd(out.line, first, OutwardAt(out.line, first, radius_m), axis_points, radius_m,
+              0.2 * wall_m, kStep * radius_m);
+    }
   }
   return out;
 }
