@@ -32,11 +32,14 @@ struct ShapeEntry {
 /// Which of the keys of sizes a kind of shape takes.
 void CheckSizeKeys(const ConfigSource& source, const std::string& what, const std::string& kind) {
   const bool box = kind == "box", sphere = kind == "sphere";
+  const std::string who = what + ": a " + kind;
   for (const auto& [key, takes] : {std::pair{"size_m", box}, std::pair{"radius_m", !box},
                                    std::pair{"length_m", !box && !sphere}}) {
     const bool given = !source.PlaceOf(key).empty();
-    if (takes && !given) RefuseKey(source, "", what + ": a " + kind + " needs the key " + key);
-    if (!takes && given) RefuseKey(source, key, what + ": a " + kind + " has no " + key);
+    if (takes && !given) {
+      RefuseKey(source, "", std::string(who).append(" needs the key ").append(key));
+    }
+    if (!takes && given) RefuseKey(source, key, std::string(who).append(" has no ").append(key));
   }
 }
 

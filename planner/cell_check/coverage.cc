@@ -116,8 +116,9 @@ CoverageShares CoverageOf(const CellCheckInput& input) {
     const std::vector<OrientedBox> arm_N = WaitingArm(input);
     int hidden = 0;
     for (int i = 0; i < kGrid * kGrid; ++i) {
-      const double u = 2.0 * (i % kGrid) / (kGrid - 1) - 1.0;
-      const double v = 2.0 * (i / kGrid) / (kGrid - 1) - 1.0;
+      const int column = i % kGrid, row = i / kGrid;
+      const double u = 2.0 * column / (kGrid - 1) - 1.0;
+      const double v = 2.0 * row / (kGrid - 1) - 1.0;
       hidden += views.front().Hidden(Vector3(u * x, v * y, 0), arm_N) ? 1 : 0;
     }
     shares.behind_arm = static_cast<double>(hidden) / (kGrid * kGrid);

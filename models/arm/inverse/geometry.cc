@@ -72,7 +72,7 @@ Vector3 RequireMeeting(const ArmModel& arm, const std::vector<int>& axes) {
     b += across * origins[i];
   }
   for (std::size_t k = 1; k < axes.size(); ++k) RequireNotParallel(arm, axes[k - 1], axes[k]);
-  const Vector3 point = A.inverse() * b;
+  Vector3 point = A.inverse() * b;
   for (const int i : axes) {
     const double miss_m = Across(Axis(arm, i), point - origins[i]).norm();
     if (miss_m < kSameGeometry) continue;

@@ -110,11 +110,12 @@ std::vector<double> RootPhases(const Target& t) {
     largest = std::max(largest, std::abs(sample[j]));
   }
   if (largest == 0.0) return {};
+  constexpr int kMiddle = kDegree / 2;
   std::array<Complex, kDegree + 1> coefficient;  // of z^0..z^8, z = exp(i psi)
   for (int n = 0; n <= kDegree; ++n) {
     Complex sum = 0.0;
     for (int j = 0; j < kSamples; ++j) {
-      sum += sample[j] * std::polar(1.0, -2 * kPi * j * (n - kDegree / 2) / kSamples);
+      sum += sample[j] * std::polar(1.0, -2 * kPi * j * (n - kMiddle) / kSamples);
     }
     coefficient[n] = sum / (kSamples * largest);
   }
