@@ -136,9 +136,12 @@ double TipAdvance(const GripperSpec& gripper, double opening_m) {
   return table[i][1] + u * rise + u * (1 - u) * ((1 - u) * a + u * b);
 }
 
+double MinPadHeight(const GripperSpec& gripper) {
+  return kOverFloor_m + 0.5 * gripper.pad_height_m;
+}
+
 double GraspHeightOverAxis(double axis_height_m, const GripperSpec& gripper) {
-  const double lowest_E_m = kOverFloor_m + 0.5 * gripper.pad_height_m;
-  return std::max(kOverAxis_m, lowest_E_m - axis_height_m);
+  return std::max(kOverAxis_m, MinPadHeight(gripper) - axis_height_m);
 }
 
 RigidTransform LinkPose(const GripperSpec::Link& link, double opening_m, int side) {

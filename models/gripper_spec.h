@@ -59,8 +59,12 @@ inline double PadRetreat(const GripperSpec& gripper, double opening_m) {
   return TipAdvance(gripper, 0.0) - TipAdvance(gripper, opening_m);
 }
 
-/// Height of E over the tube's axis for a vertical grasp: 9 mm, or higher where the pads' lower
-/// edge would come nearer than 2 mm to the floor. `axis_height_m` over the bin floor.
+/// Smallest height of the pads' centre over a floor for a vertical tool: their lower edge stays
+/// 2 mm over it.
+double MinPadHeight(const GripperSpec& gripper);
+
+/// Height of E over the tube's axis for a vertical grasp: 9 mm, or higher where MinPadHeight asks
+/// for it. `axis_height_m` over the bin floor.
 double GraspHeightOverAxis(double axis_height_m, const GripperSpec& gripper);
 
 /// Pose in the frame of E of a link of the finger at side +1 (+y) or -1, at an opening.

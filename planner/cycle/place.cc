@@ -47,6 +47,10 @@ struct Placement {
 /// The best slot with a path that the arm can run, or why there is none.
 std::variant<Placement, StepOutcome> PlanPlace(const CycleContext& c, const Polyline& line_E) {
   const MotionPlanner& planner = c.executor.planner();
+  const GripperSpec& gripper = c.cell.model.gripper;
+  const double radius_m = c.setup.part.radius_m;
+  const double min_height_E_m =
+      MinPadHeight(gripper) - PadRetreat(gripper, 2.0 * radius_m) - kPlaceGap_m;
   const double q6_rad = c.executor.Start().q[5];
   std::vector<RigidTransform> refused;
   std::string reason = "no slot of the tray is in reach";
@@ -58,7 +62,7 @@ std::variant<Placement, StepOutcome> PlanPlace(const CycleContext& c, const Poly
              planner.Reach(Over(X_BE, kAbovePlace_m), q6_rad);
     };
     const std::optional<PlacementPose> pose =
-        PlanPlacement(c.cell.model.layout, Sagged(line_E, c.setup.part), c.setup.part.radius_m,
+        PlanPlacement(c.cell.model.layout, Sagged(line_E, c.setup.part), radius_m, min_height_E_m,
                       c.placed_T, ToolYaw(c.executor.X_BE().linear()), reachable);
     if (!pose) break;
     PathCheck check = c.executor.Check(MakePlacePath(c, *pose));

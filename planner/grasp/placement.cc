@@ -52,7 +52,8 @@ namespace {
 
 /// The tube at one slot with one yaw, as high as what lies there already asks for.
 PlacementPose PoseAt(const CellLayout& layout, const Polyline& line_E, double radius_m,
-                     const std::vector<Polyline>& placed_T, const Vector3& slot_T, double yaw_rad) {
+                     double min_height_E_m, const std::vector<Polyline>& placed_T,
+                     const Vector3& slot_T, double yaw_rad) {
   PlacementPose out;
   out.slot_centre_T = slot_T;
   const Matrix3 R_TE = VerticalTool(yaw_rad);
@@ -77,14 +78,19 @@ PlacementPose PoseAt(const CellLayout& layout, const Polyline& line_E, double ra
     }
   }
   for (Vector3& p : out.line_T) p.z() += out.raised_m;
-  p_TE.z() += out.raised_m;
+  p_TE.z() = std::max(p_TE.z(), min_height_E_m) + out.raised_m;
   out.X_BE = layout.X_BT * MakeTransform(R_TE, p_TE);
   return out;
 }
 
-/// Smallest horizontal distance to what lies already, at most kFarEnough_m.
-double Room(const Polyline& line_T, const std::vector<Polyline>& placed_T) {
+/// Smallest horizontal distance to what lies already and to the tray's edges across the slots, at
+/// most kFarEnough_m. What stands up may topple by its height, so that much is kept to the edge.
+double Room(const CellLayout& layout, const Polyline& line_T, double radius_m,
+            const std::vector<Polyline>& placed_T) {
   double room = kFarEnough_m;
+  for (const Vector3& p : line_T) {
+    room = std::min(room, 0.5 * layout.tray_size_m - std::abs(p.x()) - (p.z() - radius_m));
+  }
   for (const Polyline& other : placed_T) {
     for (const Vector3& p : line_T) {
       for (const Vector3& q : other) room = std::min(room, (p - q).head<2>().norm());
@@ -96,7 +102,7 @@ double Room(const Polyline& line_T, const std::vector<Polyline>& placed_T) {
 }  // namespace
 
 std::optional<PlacementPose> PlanPlacement(
-    const CellLayout& layout, const Polyline& line_E, double radius_m,
+    const CellLayout& layout, const Polyline& line_E, double radius_m, double min_height_E_m,
     const std::vector<Polyline>& placed_T, double yaw_near_rad,
     const std::function<bool(const RigidTransform& X_BE)>& reachable) {
   // Yaw that turns the tube's direction along the tray's y.
@@ -116,9 +122,10 @@ std::optional<PlacementPose> PlanPlacement(
   double best_score = -1e9;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     for (const double candidate : {yaw, other_yaw}) {
-      PlacementPose pose = PoseAt(layout, line_E, radius_m, placed_T, slots[i], candidate);
+      PlacementPose pose =
+          PoseAt(layout, line_E, radius_m, min_height_E_m, placed_T, slots[i], candidate);
       pose.slot = static_cast<int>(i);
-      const double score = Room(pose.line_T, placed_T) - pose.raised_m;
+      const double score = Room(layout, pose.line_T, radius_m, placed_T) - pose.raised_m;
       if (score > best_score + 1e-9 && reachable(pose.X_BE)) {
         best_score = score;
         best = std::move(pose);

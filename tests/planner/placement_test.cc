@@ -37,7 +37,8 @@ TEST_CASE("A laid tube lies in its slot, along the tray, on the surface", "[unit
     const Vector3 axis(std::cos(yaw), std::sin(yaw), 0.0);
     const Polyline line_E = {(off - 0.25) * axis, (off + 0.25) * axis};
     const double near = stream.Uniform(-kPi, kPi);
-    const PlacementPose pose = PlanPlacement(layout, line_E, radius_m, {}, near, Anywhere).value();
+    const PlacementPose pose =
+        PlanPlacement(layout, line_E, radius_m, 0.0, {}, near, Anywhere).value();
     const Polyline line_T = Transformed(layout.X_BT.inverse() * pose.X_BE, line_E);
     const Vector3 direction = (line_T[1] - line_T[0]).normalized();
     CHECK(std::abs(direction.x()) < 1e-9);
@@ -46,6 +47,31 @@ TEST_CASE("A laid tube lies in its slot, along the tray, on the surface", "[unit
     CHECK(pose.X_BE.linear().col(2).isApprox(Vector3(0, 0, -1)));
     CHECK(pose.raised_m == 0.0);
   }
+}
+
+TEST_CASE("Where the fingers reach below the tube it falls by what they need", "[unit]") {
+  const CellLayout layout = PaperCell().layout;
+  const Polyline line_E = {Vector3(-0.25, 0, 0.002), Vector3(0.25, 0, 0.002)};
+  for (const double min_height_m : {0.0, 0.010, 0.030}) {
+    const PlacementPose pose =
+        PlanPlacement(layout, line_E, 0.0125, min_height_m, {}, 0.0, Anywhere).value();
+    const double height_m = (layout.X_BT.inverse() * pose.X_BE).translation().z();
+    CHECK(height_m == Approx(std::max(0.0145, min_height_m)));
+    CHECK(pose.line_T.front().z() == Approx(0.0125));
+  }
+}
+
+TEST_CASE("A tube that stands up gets a slot from which it cannot topple off the tray", "[unit]") {
+  const CellLayout layout = PaperCell().layout;
+  const auto slot_x_m = [&](double rise_m) {
+    const Polyline hoop_E = {Vector3(-0.15, 0, 0), Vector3(0, 0, -rise_m), Vector3(0.15, 0, 0)};
+    return PlanPlacement(layout, hoop_E, 0.0125, 0.0, {}, 0.0, Anywhere)->slot_centre_T.x();
+  };
+  const double edge_m = 0.5 * layout.tray_size_m;
+  CHECK(edge_m - std::abs(slot_x_m(0.01)) ==
+        Approx(edge_m - 0.5 * layout.tray_zone_m).margin(0.01));
+  for (const double rise_m : {0.08, 0.12, 0.18})
+    CHECK(edge_m - std::abs(slot_x_m(rise_m)) > rise_m);
 }
 
 TEST_CASE("Slots are 55 mm apart; short parts get two rows", "[unit]") {
@@ -66,7 +92,7 @@ TEST_CASE("Straight tubes are laid side by side without touching until the tray 
   std::vector<Polyline> placed;
   for (int i = 0; i < 9; ++i) {
     const PlacementPose pose =
-        PlanPlacement(layout, line_E, radius_m, placed, 0.0, Anywhere).value();
+        PlanPlacement(layout, line_E, radius_m, 0.0, placed, 0.0, Anywhere).value();
     for (const Polyline& other : placed) {
       if (i < 8) CHECK(ClosestOfLines(pose.line_T, other).distance_m > 2 * radius_m);
     }
@@ -83,9 +109,9 @@ TEST_CASE("A slot out of the arm's reach is not offered", "[unit]") {
   const auto right_half = [&](const RigidTransform& X_BE) {
     return X_BE.translation().x() > middle_x;
   };
-  CHECK(PlanPlacement(layout, line_E, 0.0125, {}, 0.0, right_half)->slot_centre_T.x() > 0.0);
+  CHECK(PlanPlacement(layout, line_E, 0.0125, 0.0, {}, 0.0, right_half)->slot_centre_T.x() > 0.0);
   const auto nowhere = [](const RigidTransform&) { return false; };
-  CHECK_FALSE(PlanPlacement(layout, line_E, 0.0125, {}, 0.0, nowhere).has_value());
+  CHECK_FALSE(PlanPlacement(layout, line_E, 0.0125, 0.0, {}, 0.0, nowhere).has_value());
 }
 
 }  // namespace
