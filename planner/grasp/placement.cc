@@ -83,20 +83,26 @@ PlacementPose PoseAt(const CellLayout& layout, const Polyline& line_E, double ra
   return out;
 }
 
-/// Smallest horizontal distance to what lies already and to the tray's edges across the slots, at
-/// most kFarEnough_m. What stands up may topple by its height, so that much is kept to the edge.
-double Room(const CellLayout& layout, const Polyline& line_T, double radius_m,
-            const std::vector<Polyline>& placed_T) {
+/// Smallest horizontal distance to what lies already, at most kFarEnough_m.
+double Room(const Polyline& line_T, const std::vector<Polyline>& placed_T) {
   double room = kFarEnough_m;
-  for (const Vector3& p : line_T) {
-    room = std::min(room, 0.5 * layout.tray_size_m - std::abs(p.x()) - (p.z() - radius_m));
-  }
   for (const Polyline& other : placed_T) {
     for (const Vector3& p : line_T) {
       for (const Vector3& q : other) room = std::min(room, (p - q).head<2>().norm());
     }
   }
   return room;
+}
+
+/// How far the tube would reach over the tray's edge if it toppled: what stands up falls aside by
+/// its height.
+double ToppleOver(const CellLayout& layout, const Polyline& line_T, double radius_m) {
+  double over_m = 0.0;
+  for (const Vector3& p : line_T) {
+    const double reach_m = p.head<2>().cwiseAbs().maxCoeff() + p.z() - radius_m;
+    over_m = std::max(over_m, reach_m - 0.5 * layout.tray_size_m);
+  }
+  return over_m;
 }
 
 }  // namespace
@@ -125,7 +131,8 @@ std::optional<PlacementPose> PlanPlacement(
       PlacementPose pose =
           PoseAt(layout, line_E, radius_m, min_height_E_m, placed_T, slots[i], candidate);
       pose.slot = static_cast<int>(i);
-      const double score = Room(layout, pose.line_T, radius_m, placed_T) - pose.raised_m;
+      const double score =
+          Room(pose.line_T, placed_T) - pose.raised_m - ToppleOver(layout, pose.line_T, radius_m);
       if (score > best_score + 1e-9 && reachable(pose.X_BE)) {
         best_score = score;
         best = std::move(pose);

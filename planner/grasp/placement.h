@@ -30,12 +30,12 @@ Vector3 PrincipalDirection(const Polyline& line);
 std::vector<Vector3> Slots(const CellLayout& layout, double extent_y_m);
 
 /// Chooses the slot and the sense of the tube's direction (both are equal) that keep the tube
-/// farthest from those that lie already (`placed_T`) and from the tray's edges, then the smaller
-/// slot, then the smaller turn from `yaw_near_rad`. Its direction lies along the tray's y, its
-/// centre on the slot's centre as far as E stays in its zone. `line_E`: the held tube's centerline
-/// relative to E; tool vertical. `min_height_E_m`: as low as E may go over the tray. Long pads that
-/// hold a tube high up let it fall by what they reach below it. `reachable` says which poses of E
-/// the arm can take; nothing when it can take none.
+/// farthest from those that lie already (`placed_T`) and from toppling off the tray, then the
+/// smaller slot, then the smaller turn from `yaw_near_rad`. Its direction lies along the tray's y,
+/// its centre on the slot's centre as far as E stays in its zone. `line_E`: the held tube's
+/// centerline relative to E; tool vertical. `min_height_E_m`: as low as E may go over the tray.
+/// Long pads that hold a tube high up let it fall by what they reach below it. `reachable` says
+/// which poses of E the arm can take; nothing when it can take none.
 std::optional<PlacementPose> PlanPlacement(
     const CellLayout& layout, const Polyline& line_E, double radius_m, double min_height_E_m,
     const std::vector<Polyline>& placed_T, double yaw_near_rad,

@@ -1,5 +1,7 @@
 #include "planner/grasp/placement.h"
 
+#include <algorithm>
+
 #include "models/base/random.h"
 #include "tests/support/catch.h"
 #include "tests/support/paper_cell.h"
@@ -63,15 +65,24 @@ TEST_CASE("Where the fingers reach below the tube it falls by what they need", "
 
 TEST_CASE("A tube that stands up gets a slot from which it cannot topple off the tray", "[unit]") {
   const CellLayout layout = PaperCell().layout;
-  const auto slot_x_m = [&](double rise_m) {
-    const Polyline hoop_E = {Vector3(-0.15, 0, 0), Vector3(0, 0, -rise_m), Vector3(0.15, 0, 0)};
-    return PlanPlacement(layout, hoop_E, 0.0125, 0.0, {}, 0.0, Anywhere)->slot_centre_T.x();
+  const auto placed = [&](const Polyline& line_E) {
+    return PlanPlacement(layout, line_E, 0.0125, 0.0, {}, 0.0, Anywhere).value();
   };
-  const double edge_m = 0.5 * layout.tray_size_m;
-  CHECK(edge_m - std::abs(slot_x_m(0.01)) ==
-        Approx(edge_m - 0.5 * layout.tray_zone_m).margin(0.01));
-  for (const double rise_m : {0.08, 0.12, 0.18})
-    CHECK(edge_m - std::abs(slot_x_m(rise_m)) > rise_m);
+  const double half_m = 0.5 * layout.tray_size_m;
+  const Polyline flat_E = {Vector3(-0.15, 0, 0), Vector3(0.15, 0, 0)};
+  CHECK(placed(flat_E).slot == 0);
+  for (const double rise_m : {0.12, 0.15, 0.18}) {
+    const Polyline hoop_E = {Vector3(-0.15, 0, 0), Vector3(0, 0, -rise_m), Vector3(0.15, 0, 0)};
+    for (const Vector3& p : placed(hoop_E).line_T) {
+      CHECK(p.head<2>().cwiseAbs().maxCoeff() + p.z() - 0.0125 < half_m + kExact);
+    }
+  }
+  // Short enough for two rows: its tall end goes to the middle of the tray.
+  const Polyline hook_E = {Vector3(-0.11, 0, 0), Vector3(0.06, 0, 0), Vector3(0.08, 0, -0.18)};
+  const Polyline hook_T = placed(hook_E).line_T;
+  const auto tallest = std::max_element(hook_T.begin(), hook_T.end(),
+                                        [](const auto& a, const auto& b) { return a.z() < b.z(); });
+  CHECK(std::abs(tallest->y()) < 0.15);
 }
 
 TEST_CASE("Slots are 55 mm apart; short parts get two rows", "[unit]") {
