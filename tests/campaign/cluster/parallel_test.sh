@@ -19,6 +19,18 @@ FakeProgram "$work/broken" 78 0
 code=0
 TUBETWIN=$work/broken "$parallel" "$work/C.toml" "$work/broken.out" 1 2>/dev/null || code=$?
 [[ $code == 78 && $(Runs "$work/broken") == 1 ]] || Fail "78: exit $code after $(Runs "$work/broken") runs"
+# One full disk ends its own shard: what is unfinished beside it is tried again, and only then it ends with 74.
+cat >"$work/full" <<SH
+#!/usr/bin/env bash
+echo "\$PARALLEL_SEQ" >>"$work/full.runs"
+[[ \$PARALLEL_SEQ == 1 ]] && exit 74
+((\$(grep -c 2 "$work/full.runs") > 1)) || exit 75
+SH
+chmod +x "$work/full"
+code=0
+TUBETWIN=$work/full "$parallel" "$work/C.toml" "$work/full.out" 2 2>/dev/null || code=$?
+[[ $code == 74 ]] || Fail "a full disk: exit $code, not 74"
+[[ $(grep -c 2 "$work/full.runs") == 2 ]] || Fail "an unfinished shard beside a full disk was not tried again"
 for words in "$work/C.toml $work/x 0" "$work/C.toml $work/x two" "$work/C.toml $work/x"; do
   code=0
   # shellcheck disable=SC2086  # several words on purpose
