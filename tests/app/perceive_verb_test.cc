@@ -112,29 +112,83 @@ TEST_CASE("A bad cloud ends with 65, costs no memory and leaves nothing", "[app]
                 "good.pcd");
 }
 
-TEST_CASE("A cloud without a pose takes that of --pose, one with a pose keeps it", "[app]") {
+TEST_CASE("The pose that a user gives wins over the file's, and a note says so", "[app]") {
   const TemporaryFolder folder;
   Write(folder, "none.pcd", Pcd("20", "20", "400", FlatFloor(), ""));
   Write(folder, "has.pcd", Pcd("20", "20", "400", FlatFloor()));
-  const Outcome outcome = RunProgram(
-      folder,
-      "perceive none.pcd has.pcd --part pvc_a --pose -0.1,0,0.5,0,1,0,0 --labelled l.pcd "
-      "--out t.json");
+  Write(folder, "axes.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 0 0 1 0 0\n"));
+  Write(folder, "other.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0.2 0 0.5 0 1 0 0\n"));
+  const std::string pose = " --part pvc_a --pose -0.1,0,0.5,0,1,0,0 --out t.json ";
+  const Outcome outcome =
+      RunProgram(folder, "perceive none.pcd has.pcd axes.pcd --labelled l.pcd" + pose);
   INFO(outcome.err);
   REQUIRE(outcome.code == 0);
-  CHECK(outcome.err.find("has.pcd: has a pose") != std::string::npos);
+  CHECK(outcome.err.find("has.pcd: --pose is used, not the file's own pose 0,0,0.5,0,1,0,0, which "
+                         "is 0.1 m and 0 degrees off") != std::string::npos);
+  CHECK(outcome.err.find("axes.pcd: --pose is used") != std::string::npos);
   CHECK(outcome.err.find("none.pcd") == std::string::npos);
   const Json tubes = Json::parse(ReadFile(folder.path() + "/t.json"));
   CHECK(tubes["tubes"].empty());
-  const OrganizedCloud first = ReadCloud(folder.path() + "/l.pcd");
-  const OrganizedCloud second = ReadCloud(folder.path() + "/l_1.pcd");
-  CHECK(first.X_NS.translation().isApprox(Vector3(-0.1, 0, 0.5)));
-  CHECK(second.X_NS.translation().isApprox(Vector3(0, 0, 0.5)));
-  CHECK(std::count(first.label.begin(), first.label.end(), kLabelCell) == 400);
-  CheckRefused(folder, "perceive none.pcd --part pvc_a --pose 0,0,0.5 --out u.json", 64, "--pose");
-  CheckRefused(folder, "perceive none.pcd --part pvc_a --pose 0,0,nan,0,1,0,0 --out u.json", 64,
-               "--pose");
+  for (const char* labelled : {"/l.pcd", "/l_1.pcd", "/l_2.pcd"}) {
+    const OrganizedCloud cloud = ReadCloud(folder.path() + labelled);
+    CHECK(cloud.X_NS.translation().isApprox(Vector3(-0.1, 0, 0.5)));
+    CHECK(std::count(cloud.label.begin(), cloud.label.end(), kLabelCell) == 400);
+  }
+  // What is said twice needs no note.
+  const Outcome same = RunProgram(
+      folder, "perceive has.pcd --part pvc_a --pose 0,0,0.50002,0,1,0,0.00001 --out t.json");
+  CHECK(same.code == 0);
+  CHECK(same.err.find("--pose is used") == std::string::npos);
+  // One pose cannot be right for views that were taken from two.
+  CheckRefused(folder, "perceive has.pcd none.pcd other.pcd" + pose, 64,
+               "has.pcd and other.pcd say that they were taken from different ones");
+}
+
+TEST_CASE("A pose that is none is refused with what to write", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "none.pcd", Pcd("20", "20", "400", FlatFloor(), ""));
+  Write(folder, "mm.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 500 0 1 0 0\n"));
+  Write(folder, "axes.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 0 0 1 0 0\n"));
+  const auto refused = [&](const std::string& cloud, const std::string& pose, int code,
+                           const std::string& said) {
+    CheckRefused(folder, "perceive " + cloud + " --part pvc_a --out u.json " + pose, code, said);
+  };
+  refused("none.pcd", "--pose 0,0,0.5", 64, "tx,ty,tz,qw,qx,qy,qz is needed");
+  refused("none.pcd", "--pose 0,0,nan,0,1,0,0", 64, "tx,ty,tz,qw,qx,qy,qz is needed");
+  refused("none.pcd", "--pose 100,-145.2,515,0,1,0,0", 64,
+          "is it in millimetres? In metres it is 0.1, -0.1452, 0.515");
+  refused("none.pcd", "--pose 0,0,0.5,0,2,0,0", 64, "1 is needed; of that direction: 0,1,0,0");
+  refused("none.pcd", "--pose 0,0,0.5,0,0,0,0", 64, "has length 0, 1 is needed");
+  refused("mm.pcd", "", 65, "In metres it is 0, 0, 0.5: give that with --pose");
+  refused("axes.pcd", "", 65, "turns the axes only: the file has no pose");
   CHECK_FALSE(fs::exists(folder.path() + "/u.json"));
+  CHECK(
+      RunProgram(folder, "perceive mm.pcd --part pvc_a --out u.json --pose 0,0,0.5,0,1,0,0").code ==
+      0);
+}
+
+TEST_CASE("Clouds that show nothing of the bin are refused, an empty bin is not", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "none.pcd", Pcd("20", "20", "400", FlatFloor(), ""));
+  const auto pose = [](const std::string& p) {
+    return "perceive none.pcd --part pvc_a --out u.json --pose " + p + ",0,1,0,0 ";
+  };
+  const std::string said = "0 of 400 points lie in the bin of 0.77 x 0.58 x 0.09 m";
+  for (const char* p : {"1.5,0,0.5", "0,-1,0.5", "0,0,0.4", "0,0,1.2", "0,0,-0.5"}) {
+    INFO(p);
+    CheckRefused(folder, pose(p), 65, said);
+  }
+  CheckRefused(folder, "perceive none.pcd --part pvc_a --out u.json --pose 0,0,0.5,1,0,0,0", 65,
+               said);
+  CHECK_FALSE(fs::exists(folder.path() + "/u.json"));
+  CHECK(RunProgram(folder, pose("0,0,0.5")).code == 0);
+  // Another bin than the one that is seen: its walls would hide what lies around it.
+  const Outcome outcome = RunProgram(folder, pose("0,0,0.5") + "--bin 0.1,0.1,0.3");
+  INFO(outcome.err);
+  CHECK(outcome.code == 0);
+  CHECK(
+      outcome.err.find("of 400 points are seen where the bin would hide them, 0 below its floor") !=
+      std::string::npos);
 }
 
 TEST_CASE("What was perceived is drawn, and --pose floor gives the same bin", "[app][render]") {

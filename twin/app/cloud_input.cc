@@ -1,43 +1,21 @@
 #include "twin/app/cloud_input.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 
 #include "models/base/error.h"
 #include "models/base/text.h"
+#include "perception/view/bin_evidence.h"
 #include "perception/view/floor_pose.h"
+#include "twin/app/view_pose.h"
 
 namespace tubetwin {
 namespace {
 
 /// Fewer points show nothing that could be judged.
 constexpr std::size_t kFewestPoints = 50;
-
-RigidTransform ParsePose(const std::string& text) {
-  std::vector<double> numbers;
-  const char* at = text.c_str();
-  while (*at != '\0') {
-    char* end = nullptr;
-    const double value = std::strtod(at, &end);
-    if (end == at || !std::isfinite(value)) break;
-    numbers.push_back(value);
-    at = *end == ',' ? end + 1 : end;
-    if (*end != ',' && *end != '\0') break;
-  }
-  if (numbers.size() != 7 || *at != '\0') {
-    throw Error(ErrorKind::kUsage,
-                "--pose '" + text + "': tx,ty,tz,qw,qx,qy,qz is needed (metres, scanner in bin)");
-  }
-  const Eigen::Vector4d q(numbers[3], numbers[4], numbers[5], numbers[6]);
-  if (std::abs(q.norm() - 1.0) > 1e-2) {
-    throw Error(ErrorKind::kUsage, "--pose '" + text + "': qw,qx,qy,qz has length " +
-                                       Number(q.norm()) + ", 1 is needed");
-  }
-  return MakeTransform(RotationFromWxyz(q[0], q[1], q[2], q[3]),
-                       Vector3(numbers[0], numbers[1], numbers[2]));
-}
 
 void RequirePoints(const OrganizedCloud& cloud, const std::string& file) {
   const auto valid = static_cast<std::size_t>(std::count_if(
@@ -57,10 +35,28 @@ RigidTransform FitPose(const OrganizedCloud& cloud, const Bin& bin, const std::s
   }
 }
 
-/// Files that know no pose say nothing or the identity, and no scanner looks up from the middle of
-/// the bin's floor.
-bool HasPose(const OrganizedCloud& cloud) {
-  return cloud.X_NS.matrix() != RigidTransform::Identity().matrix();
+/// Throws Error(kBadData) when nothing that is in the bin, and nothing of the bin, is seen.
+void RequireBinSeen(const std::vector<ViewOfFile>& views, const Bin& bin, const Common& common) {
+  BinEvidence all;
+  for (const ViewOfFile& view : views) {
+    const BinEvidence seen = CompareWithBin(view.cloud.p_SP, view.cloud.X_NS, bin);
+    all += seen;
+    if (views.size() > 1 && seen.inside < kFewestPoints) {
+      Say(common, "warning: " + view.file + ": " + std::to_string(seen.inside) + " of " +
+                      std::to_string(seen.valid) + " points lie in the bin: check its pose");
+    }
+  }
+  if (all.inside < kFewestPoints) {
+    throw Error(ErrorKind::kBadData,
+                views.front().file + (views.size() > 1 ? " and others" : "") +
+                    ": x y z: " + std::to_string(all.inside) + " of " + std::to_string(all.valid) +
+                    " points lie in the bin of " + Number(bin.size_m[0]) + " x " +
+                    Number(bin.size_m[1]) + " x " + Number(bin.size_m[2]) +
+                    " m, and neither its floor nor its walls are seen: check the pose (scanner in "
+                    "the bin, metres; --pose) and --bin");
+  }
+  const std::string warning = BinWarning(all);
+  if (!warning.empty()) Say(common, "warning: " + warning);
 }
 
 }  // namespace
@@ -70,36 +66,28 @@ std::vector<OrganizedCloud> ReadViews(const CloudInput& given, const Bin& bin,
   const bool from_floor = given.pose == "floor";
   std::optional<RigidTransform> X_NS;
   if (!given.pose.empty() && !from_floor) X_NS = ParsePose(given.pose);
-  int fitted = 0;
-  std::vector<OrganizedCloud> views;
-  for (const std::string& file : given.clouds) {
-    views.push_back(ReadCloud(file));
-    OrganizedCloud& view = views.back();
-    RequirePoints(view, file);
-    view.label.clear();  // The pipeline never sees labels.
-    if (HasPose(view)) {
-      if (!given.pose.empty()) Say(common, file + ": has a pose, so --pose is not used for it");
-      continue;
-    }
-    if (from_floor) {
-      if (++fitted > 1) {
-        throw Error(ErrorKind::kUsage,
-                    file +
-                        ": --pose floor is for one cloud: half a turn of the bin between two "
-                        "would go unseen");
-      }
-      view.X_NS = FitPose(view, bin, file);
-      continue;
-    }
-    if (!X_NS) {
-      throw Error(ErrorKind::kBadData,
-                  file +
-                      ": VIEWPOINT (PCD) or camera (PLY) is absent or the identity: the file "
-                      "has no pose of the scanner in the bin, --pose is needed");
-    }
-    view.X_NS = *X_NS;
+  if (from_floor && given.clouds.size() > 1) {
+    throw Error(ErrorKind::kUsage, given.clouds[1] +
+                                       ": --pose floor is for one cloud: half a turn of the bin "
+                                       "between two would go unseen");
   }
-  return views;
+  std::vector<ViewOfFile> views;
+  for (const std::string& file : given.clouds) {
+    views.push_back({file, ReadCloud(file)});
+    RequirePoints(views.back().cloud, file);
+    views.back().cloud.label.clear();  // The pipeline never sees labels.
+  }
+  if (from_floor) {
+    views[0].cloud.X_NS = FitPose(views[0].cloud, bin, views[0].file);
+  } else if (X_NS) {
+    UseGivenPose(*X_NS, views, common);
+  } else {
+    RequireOwnPoses(views);
+  }
+  RequireBinSeen(views, bin, common);
+  std::vector<OrganizedCloud> out;
+  for (ViewOfFile& view : views) out.push_back(std::move(view.cloud));
+  return out;
 }
 
 CLI::Option* AddCloudOptions(CLI::App& verb, CloudInput& input) {
@@ -107,9 +95,10 @@ CLI::Option* AddCloudOptions(CLI::App& verb, CloudInput& input) {
   verb.add_option("--bin", input.bin, "Inner size of the bin: long,short,wall in metres");
   verb.add_option("--profile", input.profile, "Pipeline profile")
       ->check(CLI::IsMember(PipelineProfiles()));
-  verb.add_option("--pose", input.pose,
-                  "tx,ty,tz,qw,qx,qy,qz of the scanner in the bin, where a file has none; floor: "
-                  "fitted to floor and walls (half a turn of the bin stays open)");
+  verb.add_option(
+      "--pose", input.pose,
+      "tx,ty,tz,qw,qx,qy,qz of the scanner in the bin (metres); wins over what a file says; "
+      "floor: fitted to floor and walls (half a turn of the bin stays open)");
   return part;
 }
 

@@ -22,8 +22,9 @@ struct CloudInput {
 /// Adds --part, --bin, --profile and --pose to a verb; returns --part.
 CLI::Option* AddCloudOptions(CLI::App& verb, CloudInput& input);
 
-/// The clouds as the pipeline gets them: each with a pose, none with labels. Throws Error(kBadData)
-/// for files without a pose where none is given, or with hardly a point.
+/// The clouds as the pipeline gets them: each with a pose, none with labels. --pose wins over what
+/// the files say. Throws Error(kBadData) for files without a pose where none is given, with hardly
+/// a point, or none in the bin.
 std::vector<OrganizedCloud> ReadViews(const CloudInput& input, const Bin& bin,
                                       const Common& common);
 
