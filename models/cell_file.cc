@@ -6,6 +6,7 @@
 #include "models/base/error.h"
 #include "models/base/text.h"
 #include "models/cell_model.h"
+#include "models/files/file_schema.h"
 #include "models/model_file.h"
 
 namespace tubetwin {
@@ -137,8 +138,7 @@ struct CellEntry {
     v.Field("scanner", "a shipped scanner's name or a scanner file", scanner);
     v.Section("tool", "how sensor and gripper hang on the flange", tool);
     v.Section("scanner_mount", "where the scanner is", mount);
-    v.Section("scan", "views of a scanner on the flange; [[scan_pose]] X_BS gives them one by one",
-              scan);
+    v.Section("scan", "planned views of a scanner on the flange", scan);
     v.Section("bin", "the bin, unless pile or configuration say another", bin);
     v.Section("tray", "where tubes are placed", tray);
     v.Section("station", "where several tubes are shaken off", station);
@@ -275,6 +275,20 @@ struct CellText {
 };
 
 }  // namespace
+
+Json CellFileSchema() {
+  CellEntry cell;
+  ScanPoseEntry pose;
+  KeepOutEntry keep_out;
+  const auto schema_of = [](auto& entry) {
+    return TableSchema([&entry](ConfigVisitor& v) { entry.Visit(v); });
+  };
+  Json schema = schema_of(cell);
+  AddTables("scan_pose", "a view of a scanner on the flange, in place of planned ones",
+            schema_of(pose), 0, 0, schema);
+  AddTables("keep_out", "a box that nothing may touch", schema_of(keep_out), 0, 0, schema);
+  return schema;
+}
 
 CellModel ReadCellModel(const CellFiles& files) {
   const CellText text(files.cell);

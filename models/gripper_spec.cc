@@ -6,6 +6,7 @@
 
 #include "models/base/error.h"
 #include "models/base/text.h"
+#include "models/files/file_schema.h"
 #include "models/model_file.h"
 
 namespace tubetwin {
@@ -95,15 +96,21 @@ void RequireSameCount(const std::string& path, const std::string& key, std::size
                        " is needed: " + std::to_string(needed));
 }
 
-GripperSpec::Link ReadLink(const ConfigSource& source, const std::string& path) {
+struct LinkRows {
   std::vector<double> opening_m, y_m, z_m, angle_deg;
-  GripperSpec::Link link;
-  link.shape = ReadShape(source, [&](ConfigVisitor& v) {
+  void Visit(ConfigVisitor& v) {
     v.Field("opening_m", "openings, rising, of the three lists below", opening_m, 0, {0.0, 1.0});
     v.Field("y_m", "its centre in E at those, of the finger at +y", y_m, 0, {-1.0, 1.0});
     v.Field("z_m", "likewise", z_m, 0, {-1.0, 1.0});
     v.Field("angle_deg", "its turn about x", angle_deg, 0, {-180.0, 180.0});
-  });
+  }
+};
+
+GripperSpec::Link ReadLink(const ConfigSource& source, const std::string& path) {
+  LinkRows rows;
+  GripperSpec::Link link;
+  link.shape = ReadShape(source, [&rows](ConfigVisitor& v) { rows.Visit(v); });
+  const auto& [opening_m, y_m, z_m, angle_deg] = rows;
   const std::string name = "link '" + link.shape.name + "': ";
   if (link.shape.kind != Shape::Kind::kBox && link.shape.kind != Shape::Kind::kCapsule) {
     RefuseFile(path, name + "kind is a cylinder or sphere; allowed: box, capsule");
@@ -159,6 +166,17 @@ RigidTransform LinkPose(const GripperSpec::Link& link, double opening_m, int sid
   }
   const RigidTransform X_ELink = MakeTransform(RotX(at.angle_rad), Vector3(0, at.y_m, at.z_m));
   return side > 0 ? X_ELink : MakeTransform(RotZ(kPi), Vector3::Zero()) * X_ELink;
+}
+
+Json GripperFileSchema() {
+  GripperEntry entry;
+  LinkRows rows;
+  Json schema = TableSchema([&entry](ConfigVisitor& v) { entry.Visit(v); });
+  AddTables("shape", "what does not move with the fingers, on the sensor's tool face",
+            ShapeSchema(), 0, 0, schema);
+  AddTables("link", "more of a finger than its bar, for instance bars of a linkage",
+            ShapeSchema([&rows](ConfigVisitor& v) { rows.Visit(v); }), 0, 0, schema);
+  return schema;
 }
 
 GripperSpec ReadGripper(const ModelFile& file) {

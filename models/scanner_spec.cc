@@ -5,6 +5,7 @@
 
 #include "models/base/error.h"
 #include "models/base/text.h"
+#include "models/files/file_schema.h"
 #include "models/model_file.h"
 
 namespace tubetwin {
@@ -107,6 +108,13 @@ ScanSize SizeOfScan(const ScannerSpec& spec, const std::string& resolution) {
                                         spec.name + "; allowed: " + Join(known));
   }
   return size;
+}
+
+Json ScannerFileSchema() {
+  ScannerEntry entry;
+  Json schema = TableSchema([&entry](ConfigVisitor& v) { entry.Visit(v); });
+  schema["properties"]["resolutions"]["minItems"] = 1;
+  return schema;
 }
 
 ScannerSpec ReadScanner(const ModelFile& file) {

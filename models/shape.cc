@@ -5,13 +5,14 @@
 
 #include "models/base/error.h"
 #include "models/base/text.h"
+#include "models/files/file_schema.h"
 #include "models/model_file.h"
 
 namespace tubetwin {
 namespace {
 
 struct ShapeEntry {
-  std::string name, kind = "box";
+  std::string name, kind;
   std::array<double, 3> origin_m = {0, 0, 0}, rpy_deg = {0, 0, 0};
   std::array<double, 3> size_m = {kNotGiven, kNotGiven, kNotGiven};
   double radius_m = kNotGiven, length_m = kNotGiven;
@@ -73,6 +74,20 @@ Matrix3 UnitRotation(const std::array<double, 4>& wxyz, const std::string& what)
 
 Matrix3 RotationFromRpy(const std::array<double, 3>& rpy_deg) {
   return RotZ(Radians(rpy_deg[2])) * RotY(Radians(rpy_deg[1])) * RotX(Radians(rpy_deg[0]));
+}
+
+Json ShapeSchema(const std::function<void(ConfigVisitor&)>& more) {
+  ShapeEntry entry;
+  Json schema = TableSchema([&](ConfigVisitor& v) {
+    entry.Visit(v);
+    if (more) more(v);
+  });
+  Json required = Json::array();  // Which sizes are needed the kind says.
+  for (const Json& key : schema["required"]) {
+    if (key != "size_m" && key != "radius_m" && key != "length_m") required.push_back(key);
+  }
+  schema["required"] = std::move(required);
+  return schema;
 }
 
 Shape ReadShape(const ConfigSource& source, const std::function<void(ConfigVisitor&)>& more) {

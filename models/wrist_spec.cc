@@ -1,5 +1,6 @@
 #include "models/wrist_spec.h"
 
+#include "models/files/file_schema.h"
 #include "models/model_file.h"
 
 namespace tubetwin {
@@ -29,6 +30,11 @@ struct WristEntry {
 };
 
 }  // namespace
+
+Json WristFileSchema() {
+  WristEntry entry;
+  return TableSchema([&entry](ConfigVisitor& v) { entry.Visit(v); });
+}
 
 WristSpec ReadWrist(const ModelFile& file) {
   WristEntry entry;

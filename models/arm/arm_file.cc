@@ -9,6 +9,7 @@
 #include "models/base/config/config.h"
 #include "models/base/error.h"
 #include "models/base/text.h"
+#include "models/files/file_schema.h"
 
 namespace tubetwin {
 namespace {
@@ -244,6 +245,24 @@ void RequireCount(const ConfigSource& source, const std::string& key,
 }
 
 }  // namespace
+
+Json ArmFileSchema() {
+  ArmEntry arm;
+  JointEntry joint;
+  LinkEntry link;
+  ShapeLink of;
+  const auto schema_of = [](auto& entry) {
+    return TableSchema([&entry](ConfigVisitor& v) { entry.Visit(v); });
+  };
+  Json schema = schema_of(arm);
+  AddTables("joint", "one of six, from the base on", schema_of(joint), kNumJoints, kNumJoints,
+            schema);
+  AddTables("link", "one of seven, the base first", schema_of(link), kNumJoints + 1, kNumJoints + 1,
+            schema);
+  AddTables("shape", "what a link looks like to the clearance check and to contacts",
+            ShapeSchema([&of](ConfigVisitor& v) { of.Visit(v); }), 0, 0, schema);
+  return schema;
+}
 
 ArmModel ReadArm(const ModelFile& file) {
   ConfigSource source = file.Source();

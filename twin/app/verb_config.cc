@@ -6,6 +6,7 @@
 #include "models/base/json.h"
 #include "models/base/text.h"
 #include "models/model_file.h"
+#include "models/model_schema.h"
 #include "twin/app/common.h"
 #include "twin/round/scenario_check.h"
 
@@ -89,10 +90,19 @@ void AddConfigVerb(CLI::App& app, Common& common) {
     };
   });
   CLI::App* schema =
-      config->add_subcommand("schema", "Example: tubetwin config schema > schema.json");
+      config->add_subcommand("schema",
+                             "Example: tubetwin config schema > schema.json\n\nJSON Schema of "
+                             "scenario files; --of cell: of cell files, and so on.");
+  auto kind = std::make_shared<std::string>();
+  schema->add_option("--of", *kind, "Of a file that describes a cell, a device or a part")
+      ->check(CLI::IsMember(ModelFileKinds()));
   AddCommonOptions(*schema, common, "", false);
-  schema->callback([&common] {
-    common.action = [] {
+  schema->callback([kind, &common] {
+    common.action = [kind] {
+      if (!kind->empty()) {
+        std::printf("%s", ModelFileSchema(*kind).c_str());
+        return 0;
+      }
       Scenario scenario = ReadScenario(ConfigSource());
       std::printf("%s\n", WriteConfigSchema([&](ConfigVisitor& v) { scenario.Visit(v); }).c_str());
       return 0;
