@@ -31,7 +31,7 @@ struct Pile {
   bool settled = false;
 };
 
-/// Reads pile.json, CSV (`tube,index,x,y,z`) or the public set's tube_configurations text, told
+/// Reads pile.json, CSV (ParsePileCsv) or the public set's tube_configurations text, told
 /// apart by content. `part` and `bin_size_m` replace what the file says (CSV and text: part
 /// `leao2022` and bin 0.80 x 0.60 x 0.20 m unless given). A tube's own length wins over the part's.
 /// Throws Error(kMissing), Error(kBadData) naming file, line or field, value and what is allowed:
@@ -40,6 +40,7 @@ struct Pile {
 struct PileOverrides {
   std::optional<std::string> part;
   std::optional<std::array<double, 3>> bin_size_m;
+  std::optional<double> unit_m;  ///< Of the lengths in CSV and text; else metres.
 };
 Pile LoadPile(const std::string& path, const PileOverrides& overrides = {});
 void SavePile(const Pile& pile, const std::string& path);

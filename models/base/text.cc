@@ -4,6 +4,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <limits>
 
 namespace tubetwin {
 namespace {
@@ -26,6 +28,25 @@ std::size_t PlainCharacter(std::string_view text) {
   if (first == 0xf0 && byte(1) < 0x90) return 0;
   if (first == 0xf4 && byte(1) > 0x8f) return 0;
   return size;
+}
+
+bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+/// Microsoft's runtimes before 2015 print what is no number as digits would be: "1.#QNAN",
+/// "-1.#IND00", "1.#R" (rounded to one digit).
+std::optional<double> ParseOldMicrosoft(std::string_view word) {
+  const bool minus = word.starts_with('-');
+  if (minus) word.remove_prefix(1);
+  if (!word.starts_with("1.#")) return std::nullopt;
+  word.remove_prefix(3);
+  const auto letters =
+      static_cast<std::size_t>(std::find_if_not(word.begin(), word.end(), IsLetter) - word.begin());
+  if (letters == 0 || word.find_first_not_of('0', letters) != std::string_view::npos) {
+    return std::nullopt;
+  }
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (word.starts_with("INF")) return minus ? -kInfinity : kInfinity;
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 std::size_t EditDistance(std::string_view a, std::string_view b) {
@@ -75,6 +96,18 @@ std::string Number(double value) {
   return std::string(buffer, end);
 }
 
+std::optional<double> ParseNumber(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  double value = 0;
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (code == std::errc::invalid_argument || end != word.data() + word.size()) {
+    return ParseOldMicrosoft(word);
+  }
+  if (code == std::errc::result_out_of_range)
+    return std::strtod(std::string(word).c_str(), nullptr);
+  return value;
+}
+
 bool IsPlainUtf8(std::string_view text) { return Printable(text) == text; }
 
 std::string Printable(std::string_view text) {
@@ -89,6 +122,14 @@ std::string Printable(std::string_view text) {
       out += escape;
     }
     text.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return out;
+}
+
+std::string LowerCase(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "models/base/error.h"
+#include "models/base/foreign/length_unit.h"
 #include "models/base/text.h"
 
 namespace tubetwin {
@@ -27,14 +28,6 @@ const Vector3& Corner(const Mesh& mesh, const std::array<int, 3>& face, std::siz
 Vector3 FaceVector(const Mesh& mesh, const std::array<int, 3>& face) {
   return (Corner(mesh, face, 1) - Corner(mesh, face, 0))
       .cross(Corner(mesh, face, 2) - Corner(mesh, face, 0));
-}
-
-double MetresPer(const std::string& unit) {
-  if (unit == "mm") return 0.001;
-  if (unit == "cm") return 0.01;
-  if (unit == "in") return 0.0254;
-  TT_CHECK(unit == "m");
-  return 1.0;
 }
 
 std::string BoxText(const Vector3& size, double scale) {
@@ -159,20 +152,15 @@ Vector3 Mesh::BoxSize() const {
   return high - low;
 }
 
-const std::vector<std::string>& MeshUnits() {
-  static const std::vector<std::string> units = {"m", "mm", "cm", "in"};
-  return units;
-}
-
 void ScaleToMetres(Mesh& mesh, const std::string& units, const std::string& source,
                    const std::string& option) {
   const Vector3 size = mesh.BoxSize();
-  const double scale = units.empty() ? 1.0 : MetresPer(units);
+  const double scale = units.empty() ? 1.0 : MetresPer(units).value();
   const double longest = scale * size.maxCoeff();
   if (!(longest >= kSmallest_m && longest <= kLargest_m)) {
     std::vector<std::string> choices;
-    for (const std::string& unit : MeshUnits()) {
-      choices.push_back(unit + ": " + BoxText(size, MetresPer(unit)));
+    for (const std::string& unit : LengthUnits()) {
+      choices.push_back(unit + ": " + BoxText(size, MetresPer(unit).value()));
     }
     throw Error(ErrorKind::kBadData,
                 source + ": its box is " + BoxText(size, scale) +

@@ -19,15 +19,14 @@ struct Mesh {
 };
 
 /// Reads an STL, OBJ or PLY file (told apart by the name's ending) and welds vertices that
-/// coincide. Throws Error(kMissing), Error(kBadData) naming the file and the reason: another
-/// ending, not parsable, no triangle, a coordinate that is no finite number, more vertices claimed
-/// than the file can hold, more than 2 million triangles.
+/// coincide. STL may be text with anything before `solid`, or binary whatever its header says, with
+/// bytes behind the last triangle; of PLY only positions and faces are read. Throws
+/// Error(kMissing), Error(kBadData) naming the file and the reason: another ending, not parsable,
+/// no triangle, a coordinate that is no finite number, more vertices claimed than the file can
+/// hold, more than 2 million triangles.
 Mesh ReadMesh(const std::string& path);
 
-/// Names that ScaleToMetres knows.
-const std::vector<std::string>& MeshUnits();
-
-/// Scales a mesh to metres. `units`: "m", "mm", "cm", "in", or empty: the numbers are taken as
+/// Scales a mesh to metres. `units`: one of LengthUnits(), or empty: the numbers are taken as
 /// metres if the longest edge of the box then is 0.02 to 3 m. Throws Error(kBadData) when it is
 /// not, naming `option`, with which the user says the unit, and the box in each unit; `source`
 /// names the mesh. Precondition: `units` is known or empty.

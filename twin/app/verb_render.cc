@@ -7,7 +7,9 @@
 
 #include "models/base/cloud/cloud.h"
 #include "models/base/error.h"
+#include "models/base/foreign/length_unit.h"
 #include "models/base/json.h"
+#include "twin/app/cloud_input.h"
 #include "twin/app/common.h"
 #include "twin/render/perceived_picture.h"
 #include "twin/render/picture_points.h"
@@ -18,7 +20,7 @@ namespace tubetwin {
 namespace {
 
 struct RenderOptions {
-  std::string file, part, bin;
+  std::string file, part, bin, units;
   int frame = 0, speed = 1;
 };
 
@@ -64,7 +66,7 @@ void RenderTubes(const RenderOptions& given, const Json& json, const std::string
 
 /// What one scan shows of the bin.
 void RenderCloud(const RenderOptions& given, const std::string& out) {
-  const OrganizedCloud cloud = ReadCloud(given.file);
+  const OrganizedCloud cloud = ReadCloud(given.file, MetresPer(given.units));
   if (cloud.X_NS.matrix() == RigidTransform::Identity().matrix()) {
     throw Error(ErrorKind::kBadData,
                 given.file + ": says no pose of the scanner, so the bin cannot be drawn around it");
@@ -101,6 +103,9 @@ int Render(const RenderOptions& given, const Common& common) {
   }
   if (!std::filesystem::exists(given.file)) {
     throw Error(ErrorKind::kMissing, given.file + ": no such file");
+  }
+  if (!given.units.empty() && !IsCloud(given.file)) {
+    throw Error(ErrorKind::kUsage, given.file + ": --units is for clouds (.pcd, .ply)");
   }
   const std::string kind = std::filesystem::path(given.file).extension().string();
   if (kind == ".json" || kind == ".csv" || kind == ".txt") {
@@ -157,6 +162,7 @@ void AddRenderVerb(CLI::App& app, Common& common) {
   verb->add_option("--speed", given->speed, "Every N-th frame: N times as fast")
       ->check(CLI::Range(1, 100));
   verb->add_option("--part", given->part, "Part name or part file of a pile");
+  AddUnitsOption(*verb, given->units);
   verb->add_option("--bin", given->bin, "Inner size of the bin: long,short,wall in metres");
   AddCommonOptions(*verb, common, "Picture (.png) or film (.mp4)", true);
   verb->callback(

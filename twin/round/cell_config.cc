@@ -3,6 +3,7 @@
 #include <array>
 
 #include "models/base/error.h"
+#include "models/base/foreign/length_unit.h"
 #include "models/base/frames.h"
 #include "models/mesh/mesh.h"
 #include "models/shape.h"
@@ -11,7 +12,7 @@ namespace tubetwin {
 namespace {
 
 std::vector<std::string> MeshUnitChoices() {
-  std::vector<std::string> units = MeshUnits();
+  std::vector<std::string> units = LengthUnits();
   units.insert(units.begin(), "");
   return units;
 }

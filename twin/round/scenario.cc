@@ -1,6 +1,7 @@
 #include "twin/round/scenario.h"
 
 #include "models/base/error.h"
+#include "models/base/foreign/length_unit.h"
 #include "models/mesh/bin_mesh.h"
 #include "models/mesh/mesh.h"
 
@@ -8,7 +9,7 @@ namespace tubetwin {
 namespace {
 
 std::vector<std::string> MeshUnitChoices() {
-  std::vector<std::string> units = MeshUnits();
+  std::vector<std::string> units = LengthUnits();
   units.insert(units.begin(), "");
   return units;
 }

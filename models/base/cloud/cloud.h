@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,12 +38,14 @@ inline Eigen::Vector3f InvalidPoint() {
   return Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 }
 
-/// Reads binary or ascii PCD 0.7 (binary_compressed is refused), metres, with fields x y z and
-/// optionally intensity and label (others are skipped). Throws Error(kMissing) when the file does
-/// not exist and Error(kBadData) naming file, byte or line, field, value and what is allowed when
-/// the header or the data is wrong, before allocating anything that the file's own size cannot
-/// fill.
-OrganizedCloud ReadPcd(const std::string& path);
+/// Reads PCD 0.5 to 0.7, binary, binary_compressed or ascii, with fields x y z, of any number type
+/// and at any place. Fields `intensity` (F) and `label` (U) are read where they are as WritePcd
+/// writes them; what stands in any other column, and bytes behind the data, stop nothing. Lengths
+/// (points and VIEWPOINT) are in `unit_m` metres where given, else as a comment "# units mm" says,
+/// else in metres. Throws Error(kMissing) when the file does not exist and Error(kBadData) naming
+/// file, byte or line, field, value and what is allowed when the header or the data is wrong,
+/// before allocating anything that the file's own size cannot fill.
+OrganizedCloud ReadPcd(const std::string& path, std::optional<double> unit_m = std::nullopt);
 
 /// Writes binary PCD 0.7 atomically (temporary file, then rename). Throws Error(kCannotCreate |
 /// kIo).
@@ -62,14 +65,22 @@ void WritePly(const OrganizedCloud& cloud, const std::string& path);
 /// rounding of float32. Throws like WritePcd.
 void WritePhoxiPly(const OrganizedCloud& cloud, std::uint32_t frame_index, const std::string& path);
 
-/// Reads ascii or binary little-endian PLY. Units: metres, unless the header says `comment units
-/// mm` or has PhoXi's element `phoxi_frame_params` without a units comment (that vendor's files are
-/// in millimetres). With `comment frame S` (our own files) vertices are in S and `camera` is X_NS;
-/// otherwise vertices and camera share the file's frame, which becomes N, and points are moved into
-/// S. Without frame parameters the cloud is unorganised. Throws like ReadPcd.
-OrganizedCloud ReadPly(const std::string& path);
+/// WritePly where the name ends in .ply (any case), WritePcd packed by zstd for .pcd.zst, else
+/// WritePcd. Throws like WritePcd.
+void WriteCloud(const OrganizedCloud& cloud, const std::string& path);
+
+/// Reads ascii or binary PLY of either byte order: x y z of the element `vertex`, of any number
+/// type and at any place; `intensity` (floating) and `label` (whole numbers) where they are as
+/// WritePly writes them. What stands in other properties and elements, lists too, stops nothing.
+/// Units: `unit_m` metres where given; else as a comment says ("units mm"); else millimetres with
+/// PhoXi's element `phoxi_frame_params`; else metres. With `comment frame S` (our own files)
+/// vertices are in S and `camera` is X_NS; otherwise vertices and camera share the file's frame,
+/// which becomes N, and points are moved into S. The cloud is unorganised without frame parameters,
+/// and where these say another number of points: scanner software leaves out those it did not
+/// measure. Throws like ReadPcd.
+OrganizedCloud ReadPly(const std::string& path, std::optional<double> unit_m = std::nullopt);
 
 /// ReadPcd or ReadPly by the ending .pcd or .ply (any case). Throws Error(kBadData) for another.
-OrganizedCloud ReadCloud(const std::string& path);
+OrganizedCloud ReadCloud(const std::string& path, std::optional<double> unit_m = std::nullopt);
 
 }  // namespace tubetwin

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include "models/base/cloud/zstd_frame.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
+#include "models/base/foreign/content.h"
 #include "models/base/text.h"
 
 namespace tubetwin {
@@ -24,21 +24,16 @@ namespace fs = std::filesystem;
 
 static_assert(std::endian::native == std::endian::little, "cloud files are little-endian");
 
-constexpr std::uint64_t kMaxHeaderBytes = 64 * 1024;
-constexpr double kMaxMedianDistance_m = 20.0;
+constexpr std::uint64_t kMaxHeaderBytes = 1024 * 1024;
+constexpr double kMinMedianDistance_m = 0.001, kMaxMedianDistance_m = 20.0;
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 constexpr const char* kPacked = ".zst";
 /// Four times the largest scan of a PhoXi XL with every field.
 constexpr std::uint64_t kMaxUnpackedBytes = 256 * 1024 * 1024;
 
-std::string Lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 }  // namespace
 
-CloudFile::CloudFile(const std::string& path) : path_(path) {
+CloudFile::CloudFile(const std::string& path, const std::string& kind) : path_(path) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status)) throw Error(ErrorKind::kMissing, path + ": no such file");
@@ -52,32 +47,50 @@ CloudFile::CloudFile(const std::string& path) : path_(path) {
     std::string content = DecompressedFile(ReadFile(path), kMaxUnpackedBytes, path);
     size_ = content.size();
     in_ = std::make_unique<std::istringstream>(std::move(content), std::ios::binary);
-    return;
+  } else {
+    size_ = fs::file_size(path, code);
+    in_ = std::make_unique<std::ifstream>(path, std::ios::binary);
+    if (code || !*in_) {
+      throw Error(ErrorKind::kMissing, path + ": cannot be read: " + std::strerror(errno));
+    }
   }
-  size_ = fs::file_size(path, code);
-  in_ = std::make_unique<std::ifstream>(path, std::ios::binary);
-  if (code || !*in_) {
-    throw Error(ErrorKind::kMissing, path + ": cannot be read: " + std::strerror(errno));
+  if (size_ == 0) throw Error(ErrorKind::kBadData, path + ": is empty; a cloud is needed");
+  std::string head(std::min<std::uint64_t>(size_, 64), '\0');
+  in_->read(head.data(), static_cast<std::streamsize>(head.size()));
+  const std::string other = MistakenContent(head);
+  if (!other.empty() && other != "is a " + kind) {
+    throw Error(ErrorKind::kBadData, path + ": no " + kind + ": it " + other);
   }
+  if (head.starts_with(kByteOrderMark)) position_ = kByteOrderMark.size();
+  in_->seekg(static_cast<std::streamoff>(position_));
 }
 
 std::string CloudFile::HeaderLine() {
+  constexpr int kEnd = std::istream::traits_type::eof();
   ++line_;
   std::string line;
   while (true) {
     const int c = in_->get();
-    if (c == std::ifstream::traits_type::eof()) FailLine("the file ends inside its header");
+    if (c == kEnd) FailLine("the file ends inside its header");
     ++position_;
-    if (c == '\n') break;
-    const bool text = c == '\t' || c == '\r' || c >= 0x20;
-    if (!text || position_ > kMaxHeaderBytes) {
+    if (c == '\n' || (c == '\r' && old_mac_)) return line;
+    if (c == '\r') {
+      const bool with_lf = in_->peek() == '\n';
+      if (with_lf) {
+        in_->get();
+        ++position_;
+      }
+      if (with_lf || line_ == 1) {
+        old_mac_ = !with_lf;
+        return line;
+      }
+    }
+    if (c == '\0' || position_ > kMaxHeaderBytes) {
       FailLine("byte " + std::to_string(position_ - 1) +
-               " is no header text (a header has at most 65536 bytes)");
+               " is no header text (a header has at most 1048576 bytes, none of them zero)");
     }
     line.push_back(static_cast<char>(c));
   }
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  return line;
 }
 
 void CloudFile::ReadBytes(char* out, std::size_t count) {
@@ -89,6 +102,18 @@ void CloudFile::ReadBytes(char* out, std::size_t count) {
   position_ += count;
 }
 
+void CloudFile::SkipBytes(std::uint64_t count) {
+  TT_CHECK(count <= size_ - position_);
+  in_->seekg(static_cast<std::streamoff>(count), std::ios::cur);
+  position_ += count;
+}
+
+std::string CloudFile::ReadRest() {
+  std::string rest(size_ - position_, '\0');
+  ReadBytes(rest.data(), rest.size());
+  return rest;
+}
+
 void CloudFile::FailLine(const std::string& problem) const {
   throw Error(ErrorKind::kBadData, path_ + ":" + std::to_string(line_) + ": " + problem);
 }
@@ -96,6 +121,8 @@ void CloudFile::FailLine(const std::string& problem) const {
 void CloudFile::FailByte(std::uint64_t byte, const std::string& problem) const {
   throw Error(ErrorKind::kBadData, path_ + ": byte " + std::to_string(byte) + ": " + problem);
 }
+
+std::string Quoted(std::string_view word) { return "'" + Printable(word.substr(0, 40)) + "'"; }
 
 std::vector<std::string_view> SplitWords(std::string_view text) {
   std::vector<std::string_view> words;
@@ -114,55 +141,52 @@ std::int64_t HeaderInteger(const CloudFile& file, const std::string& field, std:
   std::int64_t value = 0;
   const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (code != std::errc() || end != word.data() + word.size() || value < low || value > high) {
-    file.FailLine(field + " is '" + std::string(word.substr(0, 40)) +
-                  "', allowed are whole numbers from " + std::to_string(low) + " to " +
-                  std::to_string(high));
+    file.FailLine(field + " is " + Quoted(word) + ", allowed are whole numbers from " +
+                  std::to_string(low) + " to " + std::to_string(high));
   }
   return value;
 }
 
 double HeaderNumber(const CloudFile& file, const std::string& field, std::string_view word) {
-  double value = 0;
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (code != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
-    file.FailLine(field + " holds '" + std::string(word.substr(0, 40)) +
-                  "', a finite number is needed");
+  const auto value = ParseNumber(word);
+  if (!value || !std::isfinite(*value)) {
+    file.FailLine(field + " holds " + Quoted(word) + ", a finite number is needed");
   }
-  return value;
+  return *value;
 }
 
 void FinishPoints(const CloudFile& file, OrganizedCloud& cloud) {
   // A sample of about 2,000 points decides the median; its stride depends on the size alone.
   const std::size_t stride = std::max<std::size_t>(1, cloud.size() / 2000);
-  const bool organized = cloud.organized();
   std::vector<float> sample;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     Eigen::Vector3f& p = cloud.p_SP[i];
     // One sum is finite only when all three are.
-    if (!std::isfinite(p.x() + p.y() + p.z()) || (organized && p.isZero(0.0f))) {
+    if (!std::isfinite(p.x() + p.y() + p.z()) || p.isZero(0.0f)) {
       p = InvalidPoint();
     } else if (i % stride == 0) {
       sample.push_back(p.norm());
     }
   }
+  const std::string remedy =
+      "\n(--units mm, cm or in says another unit; so does a header line 'comment units mm' in PLY, "
+      "'# units mm' in PCD)";
   if (sample.empty()) return;
   const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
   std::nth_element(sample.begin(), middle, sample.end());
-  if (*middle > kMaxMedianDistance_m) {
-    throw Error(ErrorKind::kBadData,
-                file.path() + ": x y z: the median distance from the scanner is " +
-                    Number(std::round(*middle)) + ", allowed are up to " +
-                    Number(kMaxMedianDistance_m) +
-                    " m: the file is not in metres\n(a PLY in millimetres says so by the header "
-                    "line 'comment units mm')");
-  }
+  if (*middle >= kMinMedianDistance_m && *middle <= kMaxMedianDistance_m) return;
+  throw Error(ErrorKind::kBadData,
+              file.path() + ": x y z: the median distance from the scanner is " +
+                  Number(*middle > 1 ? std::round(*middle) : *middle) + ", allowed are " +
+                  Number(kMinMedianDistance_m) + " to " + Number(kMaxMedianDistance_m) +
+                  " m: the file is not in metres" + remedy);
 }
 
 std::string CloudEnding(const std::string& path) {
   const fs::path name(path);
   std::string ending = name.extension().string();
-  if (Lower(ending) == kPacked) ending = name.stem().extension().string() + ending;
-  return Lower(ending);
+  if (LowerCase(ending) == kPacked) ending = name.stem().extension().string() + ending;
+  return LowerCase(ending);
 }
 
 void WriteRecords(const std::string& path, const std::string& header, std::size_t count,

@@ -1,236 +1,67 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
-#include <optional>
 
 #include "models/base/cloud/cloud.h"
 #include "models/base/cloud/cloud_file.h"
+#include "models/base/cloud/lzf.h"
+#include "models/base/cloud/pcd_header.h"
 #include "models/base/error.h"
 #include "models/base/text.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr std::int64_t kMaxSide = 2147483647;
+template <class T>
+double LoadAs(const char* bytes) {
+  T value;
+  std::memcpy(&value, bytes, sizeof value);
+  return static_cast<double>(value);
+}
 
-struct PcdField {
-  std::string name;
-  char type = 'F';
-  int size = 4;
-  int count = 1;
-  std::size_t offset = 0;  ///< Of its first element in a binary record.
-  int column = 0;          ///< Of its first element in an ascii record.
+double LoadNumber(const char* bytes, const PcdField& field) {
+  const bool sign = field.type == "I";
+  switch (field.size) {
+    case 1:
+      return sign ? LoadAs<std::int8_t>(bytes) : LoadAs<std::uint8_t>(bytes);
+    case 2:
+      return sign ? LoadAs<std::int16_t>(bytes) : LoadAs<std::uint16_t>(bytes);
+    case 4:
+      if (field.type == "F") return LoadAs<float>(bytes);
+      return sign ? LoadAs<std::int32_t>(bytes) : LoadAs<std::uint32_t>(bytes);
+    default:
+      if (field.type == "F") return LoadAs<double>(bytes);
+      return sign ? LoadAs<std::int64_t>(bytes) : LoadAs<std::uint64_t>(bytes);
+  }
+}
+
+/// What is read of a record: x, y, z, and intensity and label where they are as WritePcd() writes
+/// them. All else in those two columns is someone else's and left out.
+struct Wanted {
+  explicit Wanted(const PcdHeader& header)
+      : p{header.Find("x"), header.Find("y"), header.Find("z")},
+        intensity(header.Find("intensity")),
+        label(header.Find("label")) {
+    const auto is = [](const PcdField& field, const char* type, std::initializer_list<int> sizes) {
+      return field.type == type && field.count == 1 &&
+             std::find(sizes.begin(), sizes.end(), field.size) != sizes.end();
+    };
+    if (intensity != nullptr && !is(*intensity, "F", {4, 8})) intensity = nullptr;
+    if (label != nullptr && !is(*label, "U", {1, 2, 4})) label = nullptr;
+  }
+  void Resize(OrganizedCloud& cloud) const {
+    if (intensity != nullptr) cloud.intensity.resize(cloud.size());
+    if (label != nullptr) cloud.label.resize(cloud.size());
+  }
+
+  const PcdField* p[3];
+  const PcdField* intensity;
+  const PcdField* label;
 };
-
-struct PcdHeader {
-  std::vector<PcdField> fields;
-  std::int64_t width = 0, height = 0, points = 0;
-  RigidTransform X_NS = RigidTransform::Identity();
-  bool binary = true;
-  std::size_t record_size = 0;
-  int columns = 0;
-
-  const PcdField* Find(std::string_view name) const {
-    for (const PcdField& field : fields) {
-      if (field.name == name) return &field;
-    }
-    return nullptr;
-  }
-};
-
-/// A word of the file as a message may show it.
-std::string Text(std::string_view word) {
-  std::string text(word.substr(0, 40));
-  for (char& c : text) {
-    if (c < 0x20 || c > 0x7e) c = '?';
-  }
-  return "'" + text + "'";
-}
-
-RigidTransform ParseViewpoint(const CloudFile& file, const std::vector<std::string_view>& words) {
-  if (words.size() != 8) {
-    file.FailLine("VIEWPOINT has " + std::to_string(words.size() - 1) +
-                  " numbers, 7 are needed: tx ty tz qw qx qy qz");
-  }
-  double v[7];
-  for (int i = 0; i < 7; ++i) v[i] = HeaderNumber(file, "VIEWPOINT", words[1 + i]);
-  const double norm = std::sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6]);
-  constexpr double kUnitTolerance = 1e-3;  // Files with four decimals pass, a wrong order does not.
-  if (!(std::abs(norm - 1.0) <= kUnitTolerance)) {
-    file.FailLine("VIEWPOINT's quaternion (qw qx qy qz) has norm " + Number(norm) +
-                  ", allowed is 1 within " + Number(kUnitTolerance));
-  }
-  return MakeTransform(RotationFromWxyz(v[3], v[4], v[5], v[6]), {v[0], v[1], v[2]});
-}
-
-/// The words of a per-field line; their number must be that of FIELDS, which must come first.
-void RequirePerField(const CloudFile& file, const std::vector<std::string_view>& words,
-                     const PcdHeader& header) {
-  if (header.fields.empty()) file.FailLine(std::string(words[0]) + " stands before FIELDS");
-  if (words.size() - 1 != header.fields.size()) {
-    file.FailLine(std::string(words[0]) + " has " + std::to_string(words.size() - 1) +
-                  " entries, FIELDS has " + std::to_string(header.fields.size()));
-  }
-}
-
-void ParseFields(const CloudFile& file, const std::vector<std::string_view>& words,
-                 PcdHeader& header) {
-  constexpr std::size_t kMaxFields = 256;
-  if (words.size() < 2 || words.size() - 1 > kMaxFields) {
-    file.FailLine("FIELDS has " + std::to_string(words.size() - 1) +
-                  " names, allowed are 3 to 256, among them x y z");
-  }
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    if (words[i] != "_" && header.Find(words[i]) != nullptr) {
-      file.FailLine("FIELDS names " + Text(words[i]) + " twice");
-    }
-    header.fields.push_back({std::string(words[i])});
-  }
-}
-
-void ParsePerField(const CloudFile& file, const std::vector<std::string_view>& words,
-                   PcdHeader& header) {
-  RequirePerField(file, words, header);
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    PcdField& field = header.fields[i - 1];
-    const std::string name = std::string(words[0]) + " of field '" + field.name + "'";
-    if (words[0] == "SIZE") {
-      field.size = static_cast<int>(HeaderInteger(file, name, words[i], 1, 8));
-      if (field.size != 1 && field.size != 2 && field.size != 4 && field.size != 8) {
-        file.FailLine(name + " is " + Text(words[i]) + ", allowed are 1, 2, 4, 8");
-      }
-    } else if (words[0] == "TYPE") {
-      if (words[i] != "F" && words[i] != "U" && words[i] != "I") {
-        file.FailLine(name + " is " + Text(words[i]) + ", allowed are F, U, I");
-      }
-      field.type = words[i][0];
-    } else {
-      field.count = static_cast<int>(HeaderInteger(file, name, words[i], 1, 65536));
-    }
-  }
-}
-
-void RequireType(const CloudFile& file, const PcdField& field, char type,
-                 std::initializer_list<int> sizes, const std::string& allowed) {
-  const bool size_ok = std::find(sizes.begin(), sizes.end(), field.size) != sizes.end();
-  if (field.type != type || !size_ok || field.count != 1) {
-    file.FailLine("field '" + field.name + "' has TYPE " + field.type + ", SIZE " +
-                  std::to_string(field.size) + ", COUNT " + std::to_string(field.count) +
-                  ", allowed is " + allowed);
-  }
-}
-
-/// Checks that depend on several lines; positions of the fields.
-void FinishHeader(const CloudFile& file, PcdHeader& header, const std::vector<std::string>& seen) {
-  for (const char* needed : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT", "POINTS"}) {
-    if (std::find(seen.begin(), seen.end(), needed) == seen.end()) {
-      file.FailLine("the header ends without a line " + std::string(needed));
-    }
-  }
-  for (const char* name : {"x", "y", "z"}) {
-    const PcdField* field = header.Find(name);
-    if (field == nullptr) {
-      std::vector<std::string> names;
-      for (const PcdField& f : header.fields) names.push_back(f.name);
-      file.FailLine("FIELDS lacks '" + std::string(name) + "', it has: " + Join(names, " "));
-    }
-    RequireType(file, *field, 'F', {4, 8}, "TYPE F, SIZE 4 or 8, COUNT 1");
-  }
-  if (const PcdField* f = header.Find("intensity")) {
-    RequireType(file, *f, 'F', {4, 8}, "TYPE F, SIZE 4 or 8, COUNT 1");
-  }
-  if (const PcdField* f = header.Find("label")) {
-    RequireType(file, *f, 'U', {1, 2, 4}, "TYPE U, SIZE 1, 2 or 4, COUNT 1");
-  }
-  if (header.points != header.width * header.height) {
-    file.FailLine("POINTS is " + std::to_string(header.points) + ", WIDTH x HEIGHT is " +
-                  std::to_string(header.width) + " x " + std::to_string(header.height) + " = " +
-                  std::to_string(header.width * header.height));
-  }
-  for (PcdField& field : header.fields) {
-    field.offset = header.record_size;
-    field.column = header.columns;
-    header.record_size += static_cast<std::size_t>(field.size) * field.count;
-    header.columns += field.count;
-  }
-}
-
-void ParseHeaderLine(const CloudFile& file, const std::vector<std::string_view>& words,
-                     PcdHeader& header) {
-  const std::string_view key = words[0];
-  if (key == "FIELDS") return ParseFields(file, words, header);
-  if (key == "SIZE" || key == "TYPE" || key == "COUNT") return ParsePerField(file, words, header);
-  if (key == "VIEWPOINT") {
-    header.X_NS = ParseViewpoint(file, words);
-    return;
-  }
-  if (words.size() != 2) file.FailLine(std::string(key) + " needs exactly one value");
-  if (key == "VERSION") {
-    if (words[1] != "0.7" && words[1] != ".7") {
-      file.FailLine("VERSION is " + Text(words[1]) + ", allowed is 0.7");
-    }
-  } else if (key == "WIDTH") {
-    header.width = HeaderInteger(file, "WIDTH", words[1], 1, kMaxSide);
-  } else if (key == "HEIGHT") {
-    header.height = HeaderInteger(file, "HEIGHT", words[1], 1, kMaxSide);
-  } else if (key == "POINTS") {
-    header.points = HeaderInteger(file, "POINTS", words[1], 1, kMaxSide * kMaxSide);
-  } else {
-    if (words[1] != "binary" && words[1] != "ascii") {
-      file.FailLine("DATA is " + Text(words[1]) + ", allowed are binary, ascii");
-    }
-    header.binary = words[1] == "binary";
-  }
-}
-
-PcdHeader ReadHeader(CloudFile& file) {
-  static const std::vector<std::string> kKeys = {"VERSION", "FIELDS", "SIZE",   "TYPE",
-                                                 "COUNT",   "WIDTH",  "HEIGHT", "VIEWPOINT",
-                                                 "POINTS",  "DATA"};
-  PcdHeader header;
-  std::vector<std::string> seen;
-  while (seen.empty() || seen.back() != "DATA") {
-    const std::string line = file.HeaderLine();
-    const std::vector<std::string_view> words = SplitWords(line);
-    if (words.empty() || words[0].front() == '#') continue;
-    const std::string key(words[0]);
-    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
-      file.FailLine(Text(key) + " is no PCD header entry, nearest is " + NearestName(key, kKeys));
-    }
-    if (std::find(seen.begin(), seen.end(), key) != seen.end()) {
-      file.FailLine(key + " is given twice");
-    }
-    ParseHeaderLine(file, words, header);
-    seen.push_back(key);
-  }
-  FinishHeader(file, header, seen);
-  return header;
-}
-
-float LoadFloat(const char* record, const PcdField& field) {
-  if (field.size == 8) {
-    double value;
-    std::memcpy(&value, record + field.offset, sizeof value);
-    return static_cast<float>(value);
-  }
-  float value;
-  std::memcpy(&value, record + field.offset, sizeof value);
-  return value;
-}
-
-std::uint32_t LoadUnsigned(const char* record, const PcdField& field) {
-  std::uint32_t value = 0;  // Little-endian: the low bytes come first.
-  std::memcpy(&value, record + field.offset, static_cast<std::size_t>(field.size));
-  return value;
-}
 
 void ReadBinary(CloudFile& file, const PcdHeader& header, OrganizedCloud& cloud) {
-  const PcdField& x = *header.Find("x");
-  const PcdField& y = *header.Find("y");
-  const PcdField& z = *header.Find("z");
-  const PcdField* intensity = header.Find("intensity");
-  const PcdField* label = header.Find("label");
+  const Wanted wanted(header);
+  wanted.Resize(cloud);
   const std::size_t block_points = std::max<std::size_t>(1, (1u << 20) / header.record_size);
   std::vector<char> block(std::min<std::size_t>(block_points, cloud.size()) * header.record_size);
   for (std::size_t first = 0; first < cloud.size(); first += block_points) {
@@ -238,99 +69,207 @@ void ReadBinary(CloudFile& file, const PcdHeader& header, OrganizedCloud& cloud)
     file.ReadBytes(block.data(), n * header.record_size);
     for (std::size_t i = 0; i < n; ++i) {
       const char* record = block.data() + i * header.record_size;
-      cloud.p_SP[first + i] = {LoadFloat(record, x), LoadFloat(record, y), LoadFloat(record, z)};
-      if (intensity != nullptr) cloud.intensity[first + i] = LoadFloat(record, *intensity);
-      if (label != nullptr) cloud.label[first + i] = LoadUnsigned(record, *label);
+      const auto load = [&](const PcdField& f) { return LoadNumber(record + f.offset, f); };
+      for (int k = 0; k < 3; ++k) {
+        cloud.p_SP[first + i][k] = static_cast<float>(load(*wanted.p[k]));
+      }
+      if (wanted.intensity != nullptr) {
+        cloud.intensity[first + i] = static_cast<float>(load(*wanted.intensity));
+      }
+      if (wanted.label != nullptr) {
+        cloud.label[first + i] = static_cast<std::uint32_t>(load(*wanted.label));
+      }
     }
   }
 }
 
-/// Reads the numbers of the ascii data one by one and stores those that are wanted.
-class AsciiReader {
- public:
-  AsciiReader(CloudFile& file, const PcdHeader& header) : file_(file), header_(header) {
-    begin_ = file.position();
-    text_.resize(file.size() - begin_);
-    file.ReadBytes(text_.data(), text_.size());
-  }
+std::uint32_t ReadSize(CloudFile& file) {
+  char bytes[4];
+  file.ReadBytes(bytes, sizeof bytes);
+  std::uint32_t size;
+  std::memcpy(&size, bytes, sizeof size);
+  return size;
+}
 
-  void Read(OrganizedCloud& cloud) {
-    const int label_column = header_.Find("label") ? header_.Find("label")->column : -1;
-    const int intensity_column = header_.Find("intensity") ? header_.Find("intensity")->column : -1;
-    const int p_column[3] = {header_.Find("x")->column, header_.Find("y")->column,
-                             header_.Find("z")->column};
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      for (int column = 0; column < header_.columns; ++column) {
-        const double value = Next(i, column);
-        for (int k = 0; k < 3; ++k) {
-          if (column == p_column[k]) cloud.p_SP[i][k] = static_cast<float>(value);
-        }
-        if (column == intensity_column) cloud.intensity[i] = static_cast<float>(value);
-        if (column == label_column) {
-          if (!(value >= 0.0 && value <= 4294967295.0) || value != std::floor(value)) {
-            Fail(i, column, "is " + Number(value) + ", allowed are whole numbers 0 to 4294967295");
-          }
-          cloud.label[i] = static_cast<std::uint32_t>(value);
-        }
+/// Two sizes, then LZF of all values of the first field, all of the second and so on. PCL leaves
+/// padding out; other writers keep it, which the size tells.
+void ReadCompressed(CloudFile& file, const PcdHeader& header, OrganizedCloud& cloud) {
+  const std::uint64_t begin = file.position();
+  const std::uint64_t packed_size = ReadSize(file), size = ReadSize(file);
+  if (packed_size > file.size() - file.position()) {
+    file.FailByte(
+        begin, "the compressed data has " + std::to_string(packed_size) + " bytes, the file only " +
+                   std::to_string(file.size() - file.position()) + " more: it is cut off");
+  }
+  std::size_t padding = 0;
+  for (const PcdField& field : header.fields) padding += field.name == "_" ? field.bytes() : 0;
+  const std::uint64_t whole = cloud.size() * header.record_size;
+  const std::uint64_t bare = cloud.size() * (header.record_size - padding);
+  if (size != whole && size != bare) {
+    file.FailByte(begin, "the compressed data unpacks to " + std::to_string(size) +
+                             " bytes, POINTS " + std::to_string(header.points) + " of " +
+                             std::to_string(header.record_size) + " bytes each need " +
+                             std::to_string(whole));
+  }
+  std::string packed(packed_size, '\0');
+  file.ReadBytes(packed.data(), packed.size());
+  const std::string planes = LzfUnpacked(packed, size, file.path());
+  const Wanted wanted(header);
+  wanted.Resize(cloud);
+  std::size_t at = 0;
+  for (const PcdField& field : header.fields) {
+    if (field.name == "_" && size == bare) continue;
+    for (std::size_t i = 0; i < cloud.size(); ++i, at += field.bytes()) {
+      const char* bytes = planes.data() + at;
+      for (int k = 0; k < 3; ++k) {
+        if (&field == wanted.p[k]) cloud.p_SP[i][k] = static_cast<float>(LoadNumber(bytes, field));
+      }
+      if (&field == wanted.intensity) {
+        cloud.intensity[i] = static_cast<float>(LoadNumber(bytes, field));
+      }
+      if (&field == wanted.label) {
+        cloud.label[i] = static_cast<std::uint32_t>(LoadNumber(bytes, field));
       }
     }
+  }
+}
+
+/// Reads the words of the ascii data one by one and looks only into those that are wanted.
+class AsciiReader {
+ public:
+  AsciiReader(CloudFile& file, const PcdHeader& header)
+      : file_(file), header_(header), begin_(file.position()), text_(file.ReadRest()) {}
+
+  void Read(OrganizedCloud& cloud) {
+    const Wanted wanted(header_);
+    wanted.Resize(cloud);
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      for (const PcdField& field : header_.fields) {
+        for (int k = 0; k < field.count; ++k) Take(field, NextWord(i, field), wanted, i, cloud);
+      }
+      RequireLineEnd(i);
+    }
+    RequireEnd();
+  }
+
+ private:
+  void Take(const PcdField& field, std::string_view word, const Wanted& wanted, std::size_t i,
+            OrganizedCloud& cloud) {
+    for (int k = 0; k < 3; ++k) {
+      if (&field != wanted.p[k]) continue;
+      const auto value = ParseNumber(word);
+      if (!value) {
+        const bool comma = word.find(',') != std::string_view::npos;
+        Fail(i, field,
+             "is " + Quoted(word) + ", no number" +
+                 (comma ? ": numbers are written with a point and set apart by blanks" : ""));
+      }
+      cloud.p_SP[i][k] = static_cast<float>(*value);
+    }
+    // These two are not needed: one word that is none of theirs drops the column.
+    if (&field == wanted.intensity && !cloud.intensity.empty()) {
+      if (const auto value = ParseNumber(word)) {
+        cloud.intensity[i] = static_cast<float>(*value);
+      } else {
+        cloud.intensity.clear();
+      }
+    }
+    if (&field == wanted.label && !cloud.label.empty()) {
+      const auto value = ParseNumber(word);
+      if (value && *value >= 0.0 && *value <= 4294967295.0 && *value == std::floor(*value)) {
+        cloud.label[i] = static_cast<std::uint32_t>(*value);
+      } else {
+        cloud.label.clear();
+      }
+    }
+  }
+
+  static bool IsBlank(char c) {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+  }
+  /// To the next word; a word that begins with '#' begins a comment.
+  void SkipBlanks() {
+    for (; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '#') at_ = std::min(text_.find_first_of("\r\n", at_), text_.size());
+      if (at_ == text_.size() || !IsBlank(text_[at_])) return;
+    }
+  }
+  std::string_view WordHere() const {
+    std::size_t end = at_;
+    while (end < text_.size() && !IsBlank(text_[end])) ++end;
+    return std::string_view(text_).substr(at_, end - at_);
+  }
+  std::string_view NextWord(std::size_t point, const PcdField& field) {
     SkipBlanks();
-    if (at_ != text_.size()) {
+    if (at_ == text_.size()) {
+      Fail(point, field, "is missing: the data ends at byte " + std::to_string(file_.size()));
+    }
+    const std::string_view word = WordHere();
+    at_ += word.size();
+    return word;
+  }
+  /// A line that goes on has another number of columns than the header says, and every later point
+  /// would be wrong.
+  void RequireLineEnd(std::size_t point) {
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
+    if (at_ == text_.size() || IsBlank(text_[at_]) || text_[at_] == '#') return;
+    throw Error(ErrorKind::kBadData, Place() + ": point " + std::to_string(point) +
+                                         ": the line goes on with " + Quoted(WordHere()) +
+                                         ", FIELDS and COUNT say " +
+                                         std::to_string(header_.columns) + " columns");
+  }
+  /// What follows must not be more points: something else (an editor's end mark) is nobody's.
+  void RequireEnd() {
+    SkipBlanks();
+    if (at_ < text_.size() && ParseNumber(WordHere())) {
       file_.FailByte(begin_ + at_,
                      "data goes on after the last of POINTS " + std::to_string(header_.points));
     }
   }
-
- private:
-  void SkipBlanks() { at_ = std::min(text_.find_first_not_of(" \t\r\n", at_), text_.size()); }
-  [[noreturn]] void Fail(std::size_t point, int column, const std::string& problem) const {
-    std::string name;
-    for (const PcdField& field : header_.fields) {
-      if (field.column <= column) name = field.name;
-    }
+  std::string Place() const {
     const auto line = file_.line() + 1 + std::count(text_.begin(), text_.begin() + at_, '\n');
-    throw Error(ErrorKind::kBadData, file_.path() + ":" + std::to_string(line) + ": point " +
-                                         std::to_string(point) + ", field '" + name + "' " +
-                                         problem);
+    return file_.path() + ":" + std::to_string(line);
   }
-  double Next(std::size_t point, int column) {
-    SkipBlanks();
-    if (at_ == text_.size()) {
-      Fail(point, column, "is missing: the data ends at byte " + std::to_string(file_.size()));
-    }
-    double value = 0;
-    const char* end = text_.data() + text_.size();
-    const auto [stop, code] = std::from_chars(text_.data() + at_, end, value);
-    const bool whole = stop == end || std::strchr(" \t\r\n", *stop) != nullptr;
-    if (code != std::errc() || !whole) {
-      const std::size_t word_end = std::min(text_.find_first_of(" \t\r\n", at_), text_.size());
-      Fail(point, column,
-           "is " + Text(std::string_view(text_).substr(at_, word_end - at_)) + ", no number");
-    }
-    at_ = static_cast<std::size_t>(stop - text_.data());
-    return value;
+  [[noreturn]] void Fail(std::size_t point, const PcdField& field,
+                         const std::string& problem) const {
+    throw Error(ErrorKind::kBadData, Place() + ": point " + std::to_string(point) + ", field '" +
+                                         field.name + "' " + problem);
   }
 
   CloudFile& file_;
   const PcdHeader& header_;
-  std::uint64_t begin_ = 0;
+  std::uint64_t begin_;
   std::string text_;
   std::size_t at_ = 0;
 };
 
-/// Compares what the header claims with what the file holds, before anything is allocated.
-void RequireData(const CloudFile& file, const PcdHeader& header) {
+/// Bytes behind the data are nobody's (PCL fills up pages), unless they are as many as make every
+/// record larger: then the header lacks a field.
+void RequireRecords(const CloudFile& file, const PcdHeader& header) {
   const std::uint64_t left = file.size() - file.position();
   const auto points = static_cast<std::uint64_t>(header.points);
-  if (header.binary) {
-    const bool fits = points <= left / header.record_size;
-    if (!fits || points * header.record_size != left) {
+  const bool fits = points <= left / header.record_size;
+  const std::uint64_t more = fits ? left - points * header.record_size : 0;
+  if (fits && (more < points || more % points != 0 || points == 1)) return;
+  file.FailByte(file.position(),
+                "POINTS " + std::to_string(points) + " of " + std::to_string(header.record_size) +
+                    " bytes each need " + (fits ? "less" : "more") + " than the " +
+                    std::to_string(left) + " bytes of data that follow (" +
+                    (fits ? std::to_string(left / points) + " bytes for each point)"
+                          : std::to_string(left / header.record_size) + " whole points)"));
+}
+
+/// Compares what the header claims with what the file holds, before anything is allocated.
+void RequireData(const CloudFile& file, const PcdHeader& header) {
+  if (header.data == PcdData::kBinary) return RequireRecords(file, header);
+  const std::uint64_t left = file.size() - file.position();
+  const auto points = static_cast<std::uint64_t>(header.points);
+  if (header.data == PcdData::kCompressed) {
+    if (points > left * kLzfLargestRatio / header.record_size) {
       file.FailByte(file.position(), "POINTS " + std::to_string(points) + " of " +
-                                         std::to_string(header.record_size) + " bytes each need " +
-                                         (fits ? "less" : "more") + " than the " +
-                                         std::to_string(left) + " bytes of data that follow (" +
-                                         std::to_string(left / header.record_size) +
-                                         " whole points)");
+                                         std::to_string(header.record_size) +
+                                         " bytes each need more than the " + std::to_string(left) +
+                                         " bytes of compressed data that follow");
     }
   } else if (points > left / (2 * static_cast<std::uint64_t>(header.columns)) + 1) {
     // A number and what separates it from the next take at least two bytes.
@@ -343,22 +282,26 @@ void RequireData(const CloudFile& file, const PcdHeader& header) {
 
 }  // namespace
 
-OrganizedCloud ReadPcd(const std::string& path) {
-  CloudFile file(path);
-  const PcdHeader header = ReadHeader(file);
+OrganizedCloud ReadPcd(const std::string& path, std::optional<double> unit_m) {
+  CloudFile file(path, "PCD cloud");
+  const PcdHeader header = ReadPcdHeader(file);
   RequireData(file, header);
   OrganizedCloud cloud;
   cloud.width = static_cast<int>(header.width);
   cloud.height = static_cast<int>(header.height);
   cloud.X_NS = header.X_NS;
-  const auto points = static_cast<std::size_t>(header.points);
-  cloud.p_SP.resize(points);
-  if (header.Find("intensity") != nullptr) cloud.intensity.resize(points);
-  if (header.Find("label") != nullptr) cloud.label.resize(points);
-  if (header.binary) {
+  cloud.p_SP.resize(static_cast<std::size_t>(header.points));
+  if (header.data == PcdData::kBinary) {
     ReadBinary(file, header, cloud);
+  } else if (header.data == PcdData::kCompressed) {
+    ReadCompressed(file, header, cloud);
   } else {
     AsciiReader(file, header).Read(cloud);
+  }
+  const double scale = unit_m.value_or(header.unit_m.value_or(1.0));
+  if (scale != 1.0) {
+    for (Eigen::Vector3f& p : cloud.p_SP) p = (scale * p.cast<double>()).cast<float>();
+    cloud.X_NS.translation() *= scale;
   }
   FinishPoints(file, cloud);
   return cloud;

@@ -215,4 +215,11 @@ void WritePhoxiPly(const OrganizedCloud& cloud, std::uint32_t frame_index,
   WriteRecords(path, header, cloud.size(), 16, trailer, FillPhoxiPly, cloud);
 }
 
+void WriteCloud(const OrganizedCloud& cloud, const std::string& path) {
+  const std::string ending = CloudEnding(path);
+  if (ending == ".ply") return WritePly(cloud, path);
+  if (ending == ".pcd.zst") return WritePackedPcd(cloud, path);
+  WritePcd(cloud, path);
+}
+
 }  // namespace tubetwin

@@ -5,6 +5,7 @@
 
 #include "models/base/error.h"
 #include "models/base/files.h"
+#include "models/base/foreign/length_unit.h"
 #include "models/base/json.h"
 #include "models/base/text.h"
 #include "models/mesh/mesh.h"
@@ -139,7 +140,7 @@ void AddImport(CLI::App& part, Common& common) {
       "hangs over: how far its end sags gives the bending stiffness.");
   import->add_option("mesh", given->mesh, "STL, OBJ or PLY file")->required();
   import->add_option("--units", given->units, "Unit of the file; needed when metres cannot be")
-      ->check(CLI::IsMember(MeshUnits()));
+      ->check(CLI::IsMember(LengthUnits()));
   import->add_option("--name", given->name, "Name of the part; default: the file's");
   import->add_option("--material", given->material,
                      "Part (name or file) whose kind, friction, stiffness, density and colour it "
