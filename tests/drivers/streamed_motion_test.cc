@@ -72,7 +72,7 @@ struct Exchange {
     queue.Cut();
     most = std::max(most, queue.size());
     if (runs) {
-      if (const auto reference = queue.Next()) {
+      if (const auto reference = queue.Next(q, rate)) {
         q = reference->q;
         fastest_rad_s2 = std::max(fastest_rad_s2, reference->qdd.cwiseAbs().maxCoeff());
       }
@@ -85,6 +85,7 @@ struct Exchange {
   IncrementQueue queue;
   JointVector q;
   bool runs = true;
+  double rate = 1.0;
   int busy = 0, most = 0;
   std::int64_t last_ms = 0;
   double now_s = 10.0, fastest_rad_s2 = 0.0;
@@ -175,10 +176,29 @@ TEST_CASE("An arm that is held back is not given more, and is told as held back"
   CHECK((exchange.q - Moved(0.3, 2.0).points.back().q).cwiseAbs().maxCoeff() < 1e-6);
 }
 
+TEST_CASE("A controller that limits the speed holds the arm back, from a quarter on", "[unit]") {
+  const auto [rate, held] = GENERATE(table<double, bool>({{0.9, false}, {0.6, true}, {0.2, true}}));
+  CAPTURE(rate);
+  Exchange exchange(Moved(0.3, 2.0), Somewhere());
+  while (exchange.now_s < 10.5) REQUIRE(exchange.Step());
+  exchange.rate = rate;
+  while (exchange.now_s < 11.4) {
+    REQUIRE(exchange.Step());
+    if (rate > 0.8) REQUIRE_FALSE(exchange.motion.held_back());
+  }
+  CHECK(exchange.motion.held_back() == held);
+  CHECK(exchange.most * 4 <= 1000 * (kAhead_s + 0.1) + 40 + 8);
+  exchange.rate = 1.0;
+  while (exchange.Step()) REQUIRE(exchange.now_s < 25.0);
+  CHECK(exchange.problem.empty());
+  CHECK_FALSE(exchange.motion.held_back());
+  CHECK((exchange.q - Moved(0.3, 2.0).points.back().q).cwiseAbs().maxCoeff() < 1e-6);
+}
+
 TEST_CASE("A controller that has run dry on the way is a problem", "[unit]") {
   Exchange exchange(Moved(0.3, 2.0), Somewhere());
   while (exchange.now_s < 10.5) REQUIRE(exchange.Step());
-  while (!exchange.queue.empty()) exchange.queue.Next();
+  while (!exchange.queue.empty()) exchange.queue.Next(exchange.q);
   exchange.now_s += 0.2;  // The link was away.
   while (exchange.Step()) REQUIRE(exchange.now_s < 15.0);
   CHECK_THAT(exchange.problem, Catch::Matchers::Contains("ran out of points"));

@@ -233,7 +233,7 @@ TEST_CASE("Whatever cannot be connected is named with its place and what was awa
              Contains("arm (motion) at 127.0.0.1:" + std::to_string(config.motion_port)));
   config = served.Config();
   config.motion_port = config.state_port;  // Listens, but does not answer.
-  CHECK_THAT(WhyNotConnected(config), Contains("no answer to CHECK_MOTION_READY"));
+  CHECK_THAT(WhyNotConnected(config), Contains("no answer to STOP_MOTION"));
   config.rate = 0.0;
   const WallClock clock;
   CHECK_THROWS_WITH(YaskawaArm(config, PaperCell().arm, clock), Contains("rate is 0"));

@@ -125,4 +125,17 @@ sm::MotionReply SendPoint(ArmRig::Socket& motion, std::int32_t sequence, double 
   return std::get<sm::MotionReply>(motion.Ask(sm::Request(point)).body);
 }
 
+void Ready(ArmRig::Socket& motion) {
+  REQUIRE(Command(motion, sm::Command::kStartTrajectoryMode).result == sm::Result::kSuccess);
+}
+
+sm::MotionReply Stream(ArmRig::Socket& motion, std::int32_t sequence, double time_s,
+                       const JointVector& q, const JointVector& qd) {
+  sm::MotionReply reply;
+  do {
+    reply = SendPoint(motion, sequence, time_s, q, qd);
+  } while (reply.result == sm::Result::kBusy);
+  return reply;
+}
+
 }  // namespace tubetwin::test

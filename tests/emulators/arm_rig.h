@@ -60,4 +60,13 @@ simple_message::MotionReply SendPoint(ArmRig::Socket& motion, std::int32_t seque
                                       const JointVector& q,
                                       const JointVector& qd = JointVector::Zero());
 
+/// Starts the job that waits for motion; it must.
+void Ready(ArmRig::Socket& motion);
+/// Sends a point again as long as the controller is busy, as clients do.
+simple_message::MotionReply Stream(ArmRig::Socket& motion, std::int32_t sequence, double time_s,
+                                   const JointVector& q,
+                                   const JointVector& qd = JointVector::Zero());
+
+inline const JointVector kOnes = JointVector::Ones();
+
 }  // namespace tubetwin::test

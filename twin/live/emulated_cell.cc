@@ -25,6 +25,7 @@ ArmEmulatorConfig ArmAt(const YaskawaConfig& arm, const EmulationPlaces& places)
   config.io_port = places.any_ports ? 0 : arm.io_port;
   config.hses_port = places.any_ports ? 0 : arm.hses_port;
   config.pulses_per_degree = arm.pulses_per_degree;
+  config.server = arm.server == "strict" ? ArmServer::kStrict : ArmServer::kMotoRos1;
   return config;
 }
 

@@ -35,6 +35,10 @@ std::optional<ArmTrouble> ArmSession::Hindrance() const {
   if (latch_) return latch_;
   if (!config_.armed) {
     if (auto trouble = TroubleOf(*status_)) return trouble;
+    if (status_->in_motion == 1) {
+      const bool moves = state_.qd.cwiseAbs().maxCoeff() > kAtRest_rad_s;
+      return ArmTrouble{ArmMode::kIdle, UncommandedMotion(moves)};
+    }
     return ArmTrouble{ArmMode::kIdle,
                       "not armed: with cell.arm.armed = false nothing is sent to its motion port"};
   }
@@ -44,6 +48,7 @@ std::optional<ArmTrouble> ArmSession::Hindrance() const {
   if (question_ == Question::kWhyNotReady) return idle("motion is not possible");
   if (statuses_ < believe_from_) return idle("the controller's next state is awaited");
   if (auto trouble = TroubleOf(*status_)) return trouble;
+  if (Settling()) return idle("the controller's job is on its way to its WAIT");
   if (status_->motion_possible == 0) return idle("motion is not possible");
   return std::nullopt;
 }

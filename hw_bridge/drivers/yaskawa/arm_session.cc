@@ -18,6 +18,11 @@ constexpr auto kLeave = std::chrono::milliseconds(300), kHeartbeat = std::chrono
 constexpr auto kOverslept = std::chrono::milliseconds(60);  ///< Turns are 20 ms apart at most.
 constexpr double kAtRest_rad_s = 0.02;
 constexpr double kSettle_s = 1.0;
+/// A controller may say that trajectory mode is on before the job has got to its WAIT: motion is
+/// then not possible for 50 ms once more. Cell time.
+constexpr double kJobWaits_s = 0.15, kJobMustWait_s = 1.0;
+/// An arm that has just been stopped comes to rest by then.
+constexpr double kComesToRest_s = 1.0;
 const double kEndTolerance_rad = Radians(0.2);
 
 }  // namespace
@@ -43,7 +48,11 @@ void ArmSession::Connect() {
   AwaitState(deadline);
   turned_ = Wall::now();
   if (!config_.armed) return;
+  RequireRest(deadline);
   motion_link_.Connect(deadline);
+  // Whatever an earlier connection has left waiting runs from here on: first of all, nothing moves.
+  motion_link_.Send(sm::MotionControl{0, 0, sm::Command::kStopMotion, {}},
+                    Wall::now() + Limit(kAnswer_s));
   Ask(Question::kWhyNotReady);
   AwaitAnswer(deadline);
   // A stop, an alarm or a mode is a person's matter.
@@ -53,11 +62,35 @@ void ArmSession::Connect() {
     AwaitAnswer(deadline);
   }
   // The state that follows the answer.
-  while (lost_.empty() && statuses_ < believe_from_ && Wall::now() < deadline) {
+  while (lost_.empty() && (Settling() || question_ != Question::kNone) && Wall::now() < deadline) {
     loop_.Wait(std::chrono::milliseconds(5));
     Turn();
   }
   if (!lost_.empty()) throw Error(ErrorKind::kDevice, lost_);
+}
+
+bool ArmSession::Settling() const {
+  if (statuses_ < believe_from_) return true;
+  const double since_s = Now_s() - started_at_s_;
+  return since_s < kJobWaits_s || (status_->motion_possible == 0 && since_s < JobLimit_s());
+}
+
+double ArmSession::JobLimit_s() const { return kJobMustWait_s * std::max(1.0, config_.rate); }
+
+void ArmSession::RequireRest(Wall::time_point deadline) {
+  const auto until = std::min(deadline, Wall::now() + Limit(kComesToRest_s));
+  bool moved = false;
+  const JointVector q = state_.q;
+  while (status_->in_motion == 1) {
+    moved = moved || state_.qd.cwiseAbs().maxCoeff() > kAtRest_rad_s ||
+            (state_.q - q).cwiseAbs().maxCoeff() > kEndTolerance_rad;
+    if (Wall::now() >= until || !state_link_.problem().empty()) {
+      throw Error(ErrorKind::kDevice,
+                  state_link_.name() + ": " + UncommandedMotion(moved) + "; nothing was sent");
+    }
+    loop_.Wait(std::chrono::milliseconds(5));
+    TakeState();
+  }
 }
 
 void ArmSession::AwaitState(Wall::time_point deadline) {
@@ -151,6 +184,10 @@ void ArmSession::TakeAnswers() {
     if (control != nullptr && (control->command == sm::Command::kCheckMotionReady ||
                                control->command == sm::Command::kStartTrajectoryMode)) {
       TakeAnswerToQuestion(answer.reply);
+    } else if (!motion_ && control != nullptr && control->command == sm::Command::kStopMotion &&
+               answer.reply.result != sm::Result::kSuccess) {
+      Lose(motion_link_.name() + ": STOP_MOTION was answered with " +
+           sm::ToString(answer.reply.result));
     } else if (motion_) {
       const auto problem = motion_->Take(answer.request, answer.reply, Now_s());
       if (problem) TakeRefusal(*problem);
@@ -164,6 +201,7 @@ void ArmSession::TakeAnswerToQuestion(const sm::MotionReply& reply) {
   answered_subcode_ = reply.subcode;
   if (asked == Question::kTrajectoryMode) {
     if (answered_ready_) {
+      started_at_s_ = Now_s();
       latch_.reset();
       state_.done = true;
       commanded_.reset();
@@ -205,9 +243,9 @@ void ArmSession::Watch() {
   if (!motion_link_.problem().empty()) {
     return Lose(motion_link_.name() + ": " + motion_link_.problem());
   }
-  if (statuses_ < believe_from_ || question_ != Question::kNone) return;
+  if (question_ != Question::kNone || statuses_ < believe_from_) return;
   if (const auto trouble = TroubleOf(*status_)) return Latch(*trouble);
-  if (status_->motion_possible == 0 && !latch_) Ask(Question::kWhyNotReady);
+  if (status_->motion_possible == 0 && !latch_ && !Settling()) Ask(Question::kWhyNotReady);
 }
 
 void ArmSession::Send() {

@@ -22,7 +22,8 @@ class ArmSession {
              NetLoop& loop);
 
   /// Connects, awaits the first state and, when armed, makes sure of trajectory mode; a stop or an
-  /// alarm is left as it is. Throws Error(kDevice).
+  /// alarm is left as it is. An arm in motion is refused before the motion port is connected, which
+  /// might make it go on. The first message there is STOP_MOTION. Throws Error(kDevice).
   void Connect();
   /// One turn of the I/O thread: takes what came, sends what is due.
   void Turn();
@@ -45,8 +46,13 @@ class ArmSession {
   /// Wall time of a limit in cell time.
   std::chrono::nanoseconds Limit(double s) const;
   void AwaitState(Wall::time_point deadline);
+  void RequireRest(Wall::time_point deadline);
   void AwaitAnswer(Wall::time_point deadline);
   void Ask(Question question);
+  /// What the controller says of itself may still be from before trajectory mode, or from before
+  /// its job has got to its WAIT.
+  bool Settling() const;
+  double JobLimit_s() const;
 
   void TakeState();
   void TakeAnswers();
@@ -78,6 +84,7 @@ class ArmSession {
   std::optional<simple_message::RobotStatus> status_;
   int statuses_ = 0;      ///< That came.
   int believe_from_ = 0;  ///< Older ones may be from before the last change.
+  double started_at_s_ = -1e9;  ///< When trajectory mode was said to be on.
   std::string lost_;      ///< Why the link is lost; empty: it is not.
   std::optional<ArmTrouble> latch_;
   /// What ended a motion, until the controller has said whether it knows more of it.

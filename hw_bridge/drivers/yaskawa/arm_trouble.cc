@@ -62,6 +62,16 @@ bool OnlyNotStarted(std::int32_t subcode) {
   }
 }
 
+std::string UncommandedMotion(bool moves) {
+  if (moves) {
+    return "the arm moves though nobody commands it from here; allowed is an arm at rest: stop "
+           "whoever moves it (another client, a job, the pendant) and start again";
+  }
+  return "the controller is in motion though the arm stands and nobody commands it from here: an "
+         "earlier connection has left motion that the next one runs; allowed is an empty queue: "
+         "press HOLD or switch the drives off at the pendant, which empties it, and start again";
+}
+
 bool Outweighs(const ArmTrouble& a, const ArmTrouble& b) { return Weight(a.mode) > Weight(b.mode); }
 
 }  // namespace tubetwin

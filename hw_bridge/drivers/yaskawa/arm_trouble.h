@@ -25,6 +25,10 @@ ArmTrouble TroubleOf(std::int32_t subcode);
 /// person's consent.
 bool OnlyNotStarted(std::int32_t subcode);
 
+/// What a controller means that is in motion though nobody commands it from here. `moves`: its arm
+/// was seen to; otherwise it stands, and increments wait.
+std::string UncommandedMotion(bool moves);
+
 /// Whether `a` is the more serious one and must not be replaced by `b`.
 bool Outweighs(const ArmTrouble& a, const ArmTrouble& b);
 

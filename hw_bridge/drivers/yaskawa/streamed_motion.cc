@@ -18,7 +18,9 @@ constexpr double kCutBy_s = 0.010;
 /// Joint speed that needs no ramp: the arm stands within a tenth of a degree.
 constexpr double kSlow_rad_s = 0.1;
 constexpr double kStanding_rad_s = 1e-3;
-constexpr double kSlowShare = 0.5;  ///< Of the path's own time.
+/// Of the path's own time, over so many counts: what is slower is held back, or its speed limited.
+constexpr double kSlowShare = 0.75;
+constexpr std::size_t kSlowCounts = 5;
 
 sm::Body Control(sm::Command command) { return sm::MotionControl{0, 0, command, {}}; }
 
@@ -133,12 +135,15 @@ std::optional<StreamedMotion::Problem> StreamedMotion::TakePoint(const sm::Motio
 
 std::optional<StreamedMotion::Problem> StreamedMotion::TakeCount(int count, double now_s) {
   const double executed_s = std::clamp(given_s() - kIncrement_s * count, 0.0, given_s());
-  const double expected_s = Executed_s(now_s);
-  const bool slow = executed_s < expected_s - kSlowShare * kCountEvery_s;
-  slow_counts_ = slow ? slow_counts_ + 1 : 0;
+  empty_ = count <= 0;
+  counts_.push_back({now_s, executed_s});
+  if (empty_) counts_.clear();
+  if (counts_.size() > kSlowCounts) counts_.pop_front();
+  held_back_ = counts_.size() == kSlowCounts &&
+               executed_s - counts_.front().executed_s <
+                   kSlowShare * (now_s - counts_.front().at_s);
   anchor_s_ = executed_s;
   anchor_at_s_ = now_s;
-  empty_ = count <= 0;
   if (!empty_ || accepted_.qd.cwiseAbs().maxCoeff() < kStanding_rad_s) return std::nullopt;
   return Problem{"the controller ran out of points after point " + std::to_string(sequence_ - 1),
                  0};

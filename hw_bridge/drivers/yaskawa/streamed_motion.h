@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
 
@@ -44,8 +45,8 @@ class StreamedMotion {
   /// Stop() was called and changes how it ends.
   bool stopped() const { return stopping_ || stream_.ramped(); }
   bool halted() const { return stopped_; }  ///< By STOP_MOTION.
-  /// The controller makes the arm wait or crawl.
-  bool held_back() const { return slow_counts_ >= kSlowCounts; }
+  /// The controller makes the arm wait, or takes much longer than the path does.
+  bool held_back() const { return held_back_; }
   const PathStream& stream() const { return stream_; }
   /// Time along the path where the controller is by now.
   double Progress_s(double now_s) const { return stream_.PathTime(Executed_s(now_s)); }
@@ -53,7 +54,6 @@ class StreamedMotion {
   const JointVector& q_last() const { return accepted_.q; }
 
  private:
-  static constexpr int kSlowCounts = 4;
   simple_message::Body PointMessage() const;
   std::optional<Problem> TakePoint(const simple_message::MotionReply& reply, double now_s);
   std::optional<Problem> TakeCount(int count, double now_s);
@@ -70,7 +70,11 @@ class StreamedMotion {
   PathStream::Point accepted_;
   double accepted_at_s_ = 0, counted_at_s_ = 0;
   double anchor_s_ = 0, anchor_at_s_ = 0;  ///< The controller was there then.
-  int slow_counts_ = 0;
+  struct Count {
+    double at_s = 0, executed_s = 0;
+  };
+  std::deque<Count> counts_;  ///< The newest.
+  bool held_back_ = false;
   bool empty_ = false;  ///< The controller has run what it was given.
   bool stopping_ = false, stop_sent_ = false, stopped_ = false;
 };

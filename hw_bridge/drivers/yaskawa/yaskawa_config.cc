@@ -12,6 +12,10 @@ void YaskawaConfig::Visit(ConfigVisitor& v) {
   v.Field("state_port", "TCP, joints and status", state_port, kPort);
   v.Field("io_port", "TCP, inputs and outputs", io_port, kPort);
   v.Field("hses_port", "UDP, high-speed Ethernet server", hses_port, kPort);
+  v.Choice("server",
+           "what `emulate` serves: motoros1 takes what MotoROS 1.9.12 takes; strict refuses points "
+           "that it takes without a look",
+           server, {"motoros1", "strict"});
   v.Field("pulses_per_degree", "of the encoders, for the controller's 30-pulse rules",
           pulses_per_degree, {1, 1e6});
 }

@@ -14,6 +14,8 @@ struct YaskawaConfig {
   /// Not connected, for they offer nothing that Arm needs: inputs and outputs (TCP), high-speed
   /// Ethernet server (UDP).
   int io_port = 50242, hses_port = 10040;
+  /// What `emulate` serves on these ports: "motoros1" or "strict". Real controllers are the first.
+  std::string server = "motoros1";
   double pulses_per_degree = 1000;  ///< Of the coarsest axis: the controller compares starts in it.
   /// Without it nothing is sent: the motion port is not even connected. Not visited: the key of the
   /// same name concerns any arm.

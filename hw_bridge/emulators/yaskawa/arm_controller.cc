@@ -1,7 +1,7 @@
 #include "hw_bridge/emulators/yaskawa/arm_controller.h"
 
+#include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
 namespace tubetwin {
@@ -9,8 +9,20 @@ namespace {
 
 namespace sm = simple_message;
 
-constexpr double kPatience_s = 5.0;  ///< For servo and job to answer.
 constexpr double kInMotionPulses = 30.0;
+constexpr TimeNs kLeaving = std::chrono::milliseconds(50);
+/// How much of its increments a controller runs changes by this much each period, at most.
+constexpr double kRateStep = 0.01;
+/// Increments that are longer than what an axis can do in their time are not taken at all.
+constexpr double kTooLong = 1.5;
+
+// Bits of the controller's status, by their I/O addresses.
+constexpr std::int32_t kMajorAlarm = 50010, kMinorAlarm = 50011, kSystemAlarm = 50012,
+                       kUserAlarm = 50013, kTeachMode = 50053, kPlayMode = 50054,
+                       kRemoteMode = 50056, kOperating = 50070, kHeld = 50071, kServoPower = 50073,
+                       kRemoteChosen = 80011, kNoExternalStop = 80025, kNoPendantStop = 80026,
+                       kNoControllerStop = 80027, kContactStopped = 81702;
+constexpr std::int32_t kFirstMinor = 4000, kFirstSystem = 8000, kFirstUser = 9000;
 
 }  // namespace
 
@@ -18,7 +30,6 @@ ArmController::ArmController(ServoArm& arm, const ArmModel& model, const Setting
     : arm_(arm), model_(model), settings_(settings), servo_on_(settings.servo_on) {
   io_.SetOutput(kOutInitDone, true);
   io_.SetOutput(kOutServer, true);
-  UpdateOutputs();
 }
 
 std::optional<sm::NotReady> ArmController::WhyNot() const {
@@ -29,8 +40,9 @@ std::optional<sm::NotReady> ArmController::WhyNot() const {
   if (!servo_on_) return sm::NotReady::kServoOff;
   if (hold_) return sm::NotReady::kHold;
   if (contact_stop_) return sm::NotReady::kContactStop;
-  if (job_ == Job::kStopped || job_name_ != "INIT_ROS") return sm::NotReady::kNotStarted;
-  if (job_ != Job::kWaiting) return sm::NotReady::kWaiting;
+  if (increment_error_) return sm::NotReady::kIncrementMove;
+  if (job_ == Job::kStopped) return sm::NotReady::kNotStarted;
+  if (!io_.Output(kOutWaiting)) return sm::NotReady::kWaiting;
   return std::nullopt;
 }
 
@@ -39,30 +51,112 @@ void ArmController::Tick(TimeNs now) {
   if (servo_on_at_ && now >= *servo_on_at_) {
     servo_on_at_.reset();
     servo_on_ = true;
-    if (std::exchange(start_job_after_servo_, false)) StartWaiting();
+    if (std::exchange(start_job_after_servo_, false)) RunJob();
   }
-  if (waiting_at_ && now >= *waiting_at_) {
-    waiting_at_.reset();
-    job_ = Job::kWaiting;
+  if (left_at_ && now >= *left_at_ + kLeaving) {
+    left_at_.reset();
+    motion_client_ = false;
+    queue_.Halt();
   }
+  StepJob();
   // Drives that gave up are what a contact looks like from here.
   if (!contact_stop_ && !arm_.Servo().fault.empty()) ProtectiveStop();
   queue_.Cut();
-  if (!WhyNot()) {
-    if (const auto reference = queue_.Next()) arm_.Follow(*reference);
-  }
-  UpdateOutputs();
+  RunQueue();
 }
 
-void ArmController::UpdateOutputs() {
-  io_.SetOutput(kOutWaiting, job_ == Job::kWaiting);
-  io_.SetOutput(kOutFailure, alarm_ != 0);
+void ArmController::StepJob() {
+  if (job_ == Job::kWaiting && io_.Output(kOutDone)) {
+    io_.SetOutput(kOutDone, false);
+    return StopJob();
+  }
+  if (!next_line_at_ || now_ < *next_line_at_) return;
+  if (job_ == Job::kStarted) {
+    io_.SetOutput(kOutDone, false);
+    io_.SetOutput(kOutWaiting, false);
+    StopMotion();
+    job_ = Job::kTimer;
+    next_line_at_ = now_ + FromSeconds(settings_.job_start_s);
+  } else if (!job_sticks_) {
+    io_.SetOutput(kOutWaiting, true);
+    job_ = Job::kWaiting;
+    next_line_at_.reset();
+  }
+}
+
+void ArmController::RunQueue() {
+  // The increments are run by a task that lives as long as a motion client's connection.
+  if (!motion_client_ || WhyNot()) return;
+  const JointVector qd = queue_.Speed();
+  for (int i = 0; i < kNumJoints; ++i) {
+    if (std::abs(qd[i]) <= kTooLong * model_.joints[i].max_speed_rad_s) continue;
+    increment_error_ = true;
+    return StopMotion();
+  }
+  const JointVector commanded = arm_.Servo().q_commanded;
+  if (const auto reference = queue_.Next(commanded, Rate(qd))) arm_.Follow(*reference);
+}
+
+double ArmController::Rate(const JointVector& qd) {
+  double allowed = 1.0;
+  if (speed_limit_m_s_ > 0.0) {
+    const JacobianMatrix J =
+        Jacobian(model_, arm_.Servo().q_commanded, RigidTransform::Identity());
+    const double speed_m_s = (J * qd).head<3>().norm();
+    if (speed_m_s > speed_limit_m_s_) allowed = speed_limit_m_s_ / speed_m_s;
+  }
+  rate_ += std::clamp(allowed - rate_, -kRateStep, kRateStep);
+  return rate_;
+}
+
+void ArmController::JoinMotion() {
+  motion_client_ = true;
+  left_at_.reset();
+  io_.SetOutput(kOutMotionClient, true);
+}
+
+void ArmController::LeaveMotion(bool at_once) {
+  late_.reset();
+  queue_.DropRest();
+  io_.SetOutput(kOutMotionClient, false);
+  if (!at_once) {
+    left_at_ = now_;
+    return;
+  }
+  motion_client_ = false;
+  queue_.Halt();
+}
+
+ControllerIo& ArmController::io() {
+  UpdateStatusBits();
+  return io_;
+}
+
+void ArmController::UpdateStatusBits() {
+  const auto between = [this](std::int32_t from, std::int32_t to) {
+    return alarm_ >= from && alarm_ < to;
+  };
+  io_.SetBit(kMajorAlarm, between(1, kFirstMinor));
+  io_.SetBit(kMinorAlarm, between(kFirstMinor, kFirstSystem));
+  io_.SetBit(kSystemAlarm, between(kFirstSystem, kFirstUser));
+  io_.SetBit(kUserAlarm, alarm_ >= kFirstUser);
+  io_.SetBit(kTeachMode, !play_);
+  io_.SetBit(kPlayMode, play_);
+  io_.SetBit(kRemoteMode, remote_);
+  io_.SetBit(kRemoteChosen, remote_);
+  io_.SetBit(kOperating, running());
+  io_.SetBit(kHeld, hold_);
+  io_.SetBit(kServoPower, servo_on_);
+  io_.SetBit(kNoExternalStop, true);
+  io_.SetBit(kNoPendantStop, !emergency_stop_);
+  io_.SetBit(kNoControllerStop, true);
+  io_.SetBit(kContactStopped, contact_stop_);
 }
 
 bool ArmController::moving() const {
   const ServoState servo = arm_.Servo();
   const double off = (servo.q - servo.q_commanded).cwiseAbs().maxCoeff();
-  return !queue_.empty() || servo.moving || off > kInMotionPulses * PulseAngle();
+  return queue_holds_data() || servo.moving || off > kInMotionPulses * PulseAngle();
 }
 
 std::array<std::int32_t, kNumJoints> ArmController::Pulses() const {
@@ -92,194 +186,6 @@ sm::RobotStatus ArmController::Status() const {
   status.mode = play_ ? sm::RobotStatus::kPlay : sm::RobotStatus::kTeach;
   status.motion_possible = WhyNot() ? 0 : 1;
   return status;
-}
-
-// Requests of the motion port.
-
-ArmController::Reaction ArmController::Answered(sm::MotionReply reply) const {
-  return {sm::Reply(std::move(reply)), false};
-}
-
-ArmController::Reaction ArmController::Handle(const sm::Message& request) {
-  if (std::holds_alternative<sm::Ping>(request.body)) return {sm::Reply(sm::Ping{}), false};
-  if (const auto* point = std::get_if<sm::JointPoint>(&request.body)) {
-    return Answered(HandlePoint(*point));
-  }
-  if (const auto* control = std::get_if<sm::MotionControl>(&request.body)) {
-    return HandleControl(*control);
-  }
-  if (const auto* tool = std::get_if<sm::SelectTool>(&request.body)) {
-    sm::MotionReply reply{tool->group, tool->sequence, 2018, sm::Result::kSuccess, 0, {}};
-    if (tool->group != 0 || tool->tool < 0 || tool->tool > 63) {
-      reply.result = sm::Result::kInvalid;
-      reply.subcode =
-          static_cast<std::int32_t>(tool->group != 0 ? sm::Invalid::kGroup : sm::Invalid::kTool);
-    }
-    return Answered(reply);
-  }
-  // A message of another port.
-  return Answered(
-      {-1, -1, 0, sm::Result::kInvalid, static_cast<std::int32_t>(sm::Invalid::kMessageType), {}});
-}
-
-std::optional<std::int32_t> ArmController::WhyInvalid(const sm::JointPoint& point) const {
-  const auto because = [](sm::Invalid code) { return static_cast<std::int32_t>(code); };
-  constexpr std::int32_t kNeeded = sm::kTime | sm::kPosition | sm::kVelocity;
-  constexpr double kLongest_s = 14400.0;
-  constexpr double kRounding = 1e-5;  ///< Of a float32 at the limit.
-  if (point.group != 0) return because(sm::Invalid::kGroup);
-  if (point.sequence < 0) return because(sm::Invalid::kSequence);
-  if ((point.valid_fields & kNeeded) != kNeeded) return because(sm::Invalid::kInsufficient);
-  if (!(point.time_s >= 0.0f && point.time_s < kLongest_s)) return because(sm::Invalid::kTime);
-  const JointVector q = sm::ToJoints(point.q_rad), qd = sm::ToJoints(point.qd_rad_s);
-  if (!q.allFinite()) return because(sm::Invalid::kPosition);
-  for (int i = 0; i < kNumJoints; ++i) {
-    if (!(std::abs(qd[i]) <= model_.joints[i].max_speed_rad_s * (1 + kRounding))) {
-      return because(sm::Invalid::kSpeed);
-    }
-  }
-  if (point.sequence > 0) {
-    return queue_.begun() ? std::nullopt : std::optional(because(sm::Invalid::kSequence));
-  }
-  if (!queue_.empty()) return because(sm::Invalid::kSequence);
-  const double off = (q - arm_.Servo().q_commanded).cwiseAbs().maxCoeff();
-  if (off > kInMotionPulses * PulseAngle()) return because(sm::Invalid::kStartPosition);
-  return std::nullopt;
-}
-
-sm::MotionReply ArmController::HandlePoint(const sm::JointPoint& point) {
-  sm::MotionReply reply{point.group, point.sequence, 14, sm::Result::kSuccess, 0, {}};
-  if (refusals_ > 0) {
-    --refusals_;
-    reply.result = refusal_;
-    reply.subcode = refusal_subcode_;
-    return reply;
-  }
-  if (const auto why = WhyNot()) {
-    reply.result = sm::Result::kNotReady;
-    reply.subcode = static_cast<std::int32_t>(*why);
-    return reply;
-  }
-  if (const auto why = WhyInvalid(point)) {
-    reply.result = sm::Result::kInvalid;
-    reply.subcode = *why;
-    return reply;
-  }
-  if (queue_.in_process()) {
-    reply.result = sm::Result::kBusy;
-    ++busy_answers_;
-    return reply;
-  }
-  // Times are cut to whole milliseconds, in single precision.
-  const IncrementQueue::Point next{static_cast<std::int64_t>(point.time_s * 1000.0f),
-                                   sm::ToJoints(point.q_rad), sm::ToJoints(point.qd_rad_s)};
-  if (point.sequence == 0) {
-    queue_.Clear();
-    // Within the 30 pulses: the motion itself begins where the arm was commanded to be.
-    queue_.Begin({next.time_ms, arm_.Servo().q_commanded, next.qd});
-  } else if (next.time_ms <= queue_.last_time_ms()) {
-    reply.result = sm::Result::kInvalid;
-    reply.subcode = static_cast<std::int32_t>(sm::Invalid::kTime);
-    return reply;
-  } else {
-    queue_.Add(next);
-  }
-  ++points_taken_;
-  return reply;
-}
-
-ArmController::Reaction ArmController::HandleControl(const sm::MotionControl& control) {
-  sm::MotionReply reply{control.group,
-                        control.sequence,
-                        static_cast<std::int32_t>(control.command),
-                        sm::Result::kSuccess,
-                        0,
-                        {}};
-  const auto failed = [&](std::int32_t subcode) {
-    reply.result = sm::Result::kFailure;
-    reply.subcode = subcode;
-    return Answered(reply);
-  };
-  switch (control.command) {
-    case sm::Command::kCheckMotionReady:
-      if (const auto why = WhyNot()) return failed(static_cast<std::int32_t>(*why));
-      return Answered(reply);
-    case sm::Command::kCheckQueueCount:
-      reply.subcode = queue_.size();
-      return Answered(reply);
-    case sm::Command::kStopMotion:
-      StopMotion();
-      return Answered(reply);
-    case sm::Command::kStartServos:
-      if (servo_on_) return Answered(reply);
-      if (emergency_stop_ || alarm_ != 0) {
-        return failed(static_cast<std::int32_t>(*WhyNot()));
-      }
-      PowerDrives();
-      late_ = Late{reply, now_ + FromSeconds(kPatience_s), true};
-      return {};
-    case sm::Command::kStopServos:
-      SwitchServo(false);
-      return Answered(reply);
-    case sm::Command::kResetAlarm:
-      ResetAlarm();
-      return alarm_ == 0 ? Answered(reply) : failed(static_cast<std::int32_t>(*WhyNot()));
-    case sm::Command::kStartTrajectoryMode:
-      return StartTrajectoryMode(reply);
-    case sm::Command::kStopTrajectoryMode:
-      if (!queue_.empty()) return failed(0);
-      StopJob();
-      return Answered(reply);
-    case sm::Command::kDisconnect:
-      if (!queue_.empty()) return failed(0);
-      return {std::nullopt, true};
-  }
-  reply.result = sm::Result::kInvalid;
-  reply.subcode = static_cast<std::int32_t>(sm::Invalid::kCommand);
-  return Answered(reply);
-}
-
-ArmController::Reaction ArmController::StartTrajectoryMode(sm::MotionReply reply) {
-  if (!WhyNot()) return Answered(reply);
-  StopMotion();
-  ResetAlarm();
-  contact_stop_ = false;
-  if (!arm_.Servo().fault.empty()) arm_.ClearServoFault();
-  if (alarm_ != 0 || emergency_stop_ || !play_ || !remote_ || hold_) {
-    reply.result = sm::Result::kNotReady;
-    reply.subcode = static_cast<std::int32_t>(*WhyNot());
-    return Answered(reply);
-  }
-  job_name_ = "INIT_ROS";
-  if (servo_on_) {
-    StartWaiting();
-  } else {
-    start_job_after_servo_ = true;
-    PowerDrives();
-  }
-  late_ = Late{reply, now_ + FromSeconds(kPatience_s), false};
-  return {};
-}
-
-std::optional<sm::Message> ArmController::TakeLate() {
-  if (!late_) return std::nullopt;
-  const auto why = WhyNot();
-  const bool done = late_->servo_only ? servo_on_ : !why;
-  // What can no longer come is not waited for.
-  const bool coming = servo_on_at_ || waiting_at_;
-  if (!done && coming && now_ < late_->until) return std::nullopt;
-  sm::MotionReply reply = late_->reply;
-  if (!done) {
-    reply.result = sm::Result::kNotReady;
-    reply.subcode = static_cast<std::int32_t>(why.value_or(sm::NotReady::kUnspecified));
-  }
-  late_.reset();
-  return sm::Reply(reply);
-}
-
-void ArmController::DropMotion() {
-  queue_.Clear();
-  late_.reset();
 }
 
 }  // namespace tubetwin

@@ -15,15 +15,27 @@
 
 namespace tubetwin {
 
+/// How closely points are looked at.
+enum class ArmServer {
+  kMotoRos1,  ///< As MotoROS 1.9.12 does.
+  kStrict,    ///< Refuses what that takes without a look: see README.md beside this room.
+};
+
 /// What a YRC1000 with MotoROS 1 does, without its sockets: servo power, job INIT_ROS, alarms,
 /// hold, contact stop, the increment queue, and the answer to each request. One thread.
+///
+/// INIT_ROS tells by OUT#889 that it waits for motion and ends when OUT#890 is on; nothing turns
+/// OUT#889 off when it ends. So the controller believes in a job that has just been started again
+/// until its second line, and then for 50 ms does not.
 class ArmController {
  public:
   struct Settings {
     double pulses_per_degree = 1000;
     double servo_on_s = 0.2;    ///< From the request to powered drives.
+    double job_line_s = 0.005;  ///< From a job's start to what its first lines do.
     double job_start_s = 0.05;  ///< TIMER of INIT_ROS, to its WAIT.
     bool servo_on = false;      ///< At the start.
+    ArmServer server = ArmServer::kMotoRos1;
   };
   /// `arm` and `model` must outlive it.
   ArmController(ServoArm& arm, const ArmModel& model, const Settings& settings);
@@ -36,20 +48,28 @@ class ArmController {
   struct Reaction {
     std::optional<simple_message::Message> answer;
     bool disconnect = false;  ///< The connection is closed, without an answer.
+    /// Whatever was answered last is sent once more instead, if anything was.
+    bool same_again = false;
   };
   Reaction Handle(const simple_message::Message& request);
   bool busy() const { return late_.has_value(); }
   std::optional<simple_message::Message> TakeLate();
-  /// The motion client is gone: with it goes its increment task.
-  void DropMotion();
-  bool queue_holds_data() const { return !queue_.empty(); }
+  /// Somebody has connected: increments run, those that wait from an earlier client too.
+  void JoinMotion();
+  /// The motion client is gone. What it has sent still runs for 50 ms, until the tasks of its
+  /// connection have ended; the rest waits for the next client. `at_once`: the newcomer has it
+  /// ended.
+  void LeaveMotion(bool at_once);
+  /// A client that has left is still being seen to.
+  bool leaving() const { return left_at_.has_value(); }
+  bool queue_holds_data() const { return queue_.size() > 0; }
 
   // State port.
   simple_message::JointFeedback Feedback() const;
   simple_message::RobotStatus Status() const;
 
-  /// I/O and registers; the controller writes its status outputs.
-  ControllerIo& io() { return io_; }
+  /// I/O and registers, with the controller's status as it is now.
+  ControllerIo& io();
 
   // Supervision.
   bool remote() const { return remote_; }
@@ -59,6 +79,8 @@ class ArmController {
   std::int32_t alarm() const { return alarm_; }
   bool moving() const;
   bool running() const { return job_ != Job::kStopped; }
+  /// At its WAIT.
+  bool waiting() const { return job_ == Job::kWaiting; }
   bool contact_stop() const { return contact_stop_; }
   const std::string& job() const { return job_name_; }
   std::array<std::int32_t, kNumJoints> Pulses() const;  ///< Measured.
@@ -80,6 +102,11 @@ class ArmController {
   /// `lasting`: cannot be reset until ClearAlarmCause().
   void RaiseAlarm(std::int32_t code, bool lasting);
   void ClearAlarmCause() { alarm_lasts_ = false; }
+  /// The job does not get past its TIMER.
+  void StickJob(bool sticks) { job_sticks_ = sticks; }
+  /// The functional safety unit lets the flange move no faster; 0: no limit. Increments then take
+  /// longer, and nothing else tells.
+  void LimitSpeed(double limit_m_s) { speed_limit_m_s_ = limit_m_s; }
   void SetRemote(bool remote);
   void SetPlay(bool play);
   /// The next `count` points are refused.
@@ -88,7 +115,7 @@ class ArmController {
   int busy_answers() const { return busy_answers_; }
 
  private:
-  enum class Job { kStopped, kStarting, kWaiting };
+  enum class Job { kStopped, kStarted, kTimer, kWaiting };
   struct Late {
     simple_message::MotionReply reply;  ///< When it succeeds.
     TimeNs until{0};
@@ -100,13 +127,19 @@ class ArmController {
   Reaction Answered(simple_message::MotionReply reply) const;
   simple_message::MotionReply HandlePoint(const simple_message::JointPoint& point);
   std::optional<std::int32_t> WhyInvalid(const simple_message::JointPoint& point) const;
+  std::optional<std::int32_t> WhyNotBegin(const simple_message::JointPoint& point) const;
+  bool TooFast(const simple_message::Slots& qd_rad_s, int slots) const;
   Reaction HandleControl(const simple_message::MotionControl& control);
+  Reaction Unknown(simple_message::MotionReply reply) const;
   Reaction StartTrajectoryMode(simple_message::MotionReply reply);
   void PowerDrives();
-  void StartWaiting();
+  void RunJob();
+  void StepJob();
   void StopJob();
   void StopMotion();
-  void UpdateOutputs();
+  void RunQueue();
+  double Rate(const JointVector& qd);
+  void UpdateStatusBits();
   double PulseAngle() const { return 1.0 / (settings_.pulses_per_degree * 180.0 / kPi); }
 
   ServoArm& arm_;
@@ -117,12 +150,15 @@ class ArmController {
   TimeNs now_{0};
 
   bool remote_ = true, play_ = true, servo_on_ = false, hold_ = false, emergency_stop_ = false;
-  bool contact_stop_ = false;
+  bool contact_stop_ = false, increment_error_ = false, job_sticks_ = false;
+  double speed_limit_m_s_ = 0, rate_ = 1;
+  bool motion_client_ = false;
+  std::optional<TimeNs> left_at_;
   std::int32_t alarm_ = 0;
   bool alarm_lasts_ = false;
   Job job_ = Job::kStopped;
   std::string job_name_ = "INIT_ROS";
-  std::optional<TimeNs> servo_on_at_, waiting_at_;
+  std::optional<TimeNs> servo_on_at_, next_line_at_;
   std::optional<Late> late_;
   bool start_job_after_servo_ = false;
 

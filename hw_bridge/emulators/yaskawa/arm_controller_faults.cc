@@ -8,14 +8,14 @@ void ArmController::StopMotion() { queue_.Clear(); }  // The arm halts without a
 
 void ArmController::PowerDrives() { servo_on_at_ = now_ + FromSeconds(settings_.servo_on_s); }
 
-void ArmController::StartWaiting() {
-  job_ = Job::kStarting;
-  waiting_at_ = now_ + FromSeconds(settings_.job_start_s);
+void ArmController::RunJob() {
+  job_ = Job::kStarted;
+  next_line_at_ = now_ + FromSeconds(settings_.job_line_s);
 }
 
 void ArmController::StopJob() {
   job_ = Job::kStopped;
-  waiting_at_.reset();
+  next_line_at_.reset();
   StopMotion();
 }
 
@@ -44,7 +44,7 @@ void ArmController::ResetAlarm() {
 
 bool ArmController::StartJob() {
   if (emergency_stop_ || alarm_ != 0 || hold_ || !servo_on_ || !play_ || !remote_) return false;
-  StartWaiting();
+  RunJob();
   return true;
 }
 

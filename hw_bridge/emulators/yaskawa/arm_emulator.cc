@@ -11,6 +11,15 @@ namespace sm = simple_message;
 constexpr int kStateClients = 4;
 constexpr std::int32_t kMotionReplyId = 2002;
 
+ArmController::Settings ControllerAt(const ArmEmulatorConfig& config) {
+  ArmController::Settings settings;
+  settings.pulses_per_degree = config.pulses_per_degree;
+  settings.servo_on_s = config.servo_on_s;
+  settings.servo_on = config.servo_on;
+  settings.server = config.server;
+  return settings;
+}
+
 TcpServer::Admission OneClient(int clients, bool may_replace) {
   if (clients == 0) return TcpServer::Admission::kAdd;
   return may_replace ? TcpServer::Admission::kReplace : TcpServer::Admission::kRefuse;
@@ -47,21 +56,13 @@ std::size_t SizeOf(const sm::Message& message) { return sm::Encode(message).size
 ArmEmulator::ArmEmulator(asio::io_context& io, ServoArm& arm, const ArmModel& model,
                          const ArmEmulatorConfig& config)
     : config_(config),
-      controller_(arm, model, {config.pulses_per_degree, config.servo_on_s, 0.05, config.servo_on}),
+      controller_(arm, model, ControllerAt(config)),
       responder_(controller_),
       motion_(io, "arm (motion)", config.listen, config.motion_port,
-              {[this](int clients) { return OneClient(clients, !controller_.queue_holds_data()); },
-               [this](Client client) {
-                 motion_client_ = client;
-                 controller_.io().SetOutput(kOutMotionClient, true);
-               },
+              {[this](int clients) { return AdmitMotion(clients); },
+               [this](Client client) { JoinMotion(client); },
                [this](Client client, std::string_view bytes) { ReceiveMotion(client, bytes); },
-               [this](Client client) {
-                 if (client != motion_client_) return;
-                 controller_.DropMotion();
-                 unhandled_.clear();
-                 controller_.io().SetOutput(kOutMotionClient, false);
-               }}),
+               [this](Client client) { LeaveMotion(client); }}),
       state_(
           io, "arm (state)", config.listen, config.state_port,
           {[](int clients) {
@@ -83,7 +84,7 @@ void ArmEmulator::Tick(TimeNs now) {
   controller_.Tick(now);
   if (controller_.busy()) {
     if (const auto late = controller_.TakeLate()) {
-      motion_.Send(motion_client_, sm::Encode(*late));
+      AnswerMotion(sm::Encode(*late));
       motion_.Pause(motion_client_, false);
       HandleMotion();
     }
@@ -105,6 +106,32 @@ void ArmEmulator::Refuse(std::int32_t subcode, int count) {
                            count);
 }
 
+TcpServer::Admission ArmEmulator::AdmitMotion(int clients) {
+  // A connection that has just closed keeps its place while what it has sent still runs.
+  const int taken = clients + (controller_.leaving() ? 1 : 0);
+  const auto admission = OneClient(taken, !controller_.queue_holds_data());
+  replacing_ = admission == TcpServer::Admission::kReplace;
+  return admission;
+}
+
+void ArmEmulator::JoinMotion(Client client) {
+  motion_client_ = client;
+  replacing_ = false;
+  last_motion_answer_.clear();
+  controller_.JoinMotion();
+}
+
+void ArmEmulator::LeaveMotion(Client client) {
+  if (client != motion_client_) return;
+  controller_.LeaveMotion(replacing_);
+  unhandled_.clear();
+}
+
+void ArmEmulator::AnswerMotion(const std::string& answer) {
+  last_motion_answer_ = answer;
+  motion_.Send(motion_client_, answer);
+}
+
 void ArmEmulator::ReceiveMotion(Client client, std::string_view bytes) {
   if (client != motion_client_) return;
   motion_bytes_ += bytes.size();
@@ -118,8 +145,7 @@ void ArmEmulator::HandleMotion() {
     const auto front = sm::DecodeFront(unhandled_, false);
     if (const auto* none = std::get_if<sm::NoMessage>(&front)) {
       unhandled_.clear();
-      motion_.Send(motion_client_, MotionError(none->id, WhyOf(*none)));
-      return;
+      return AnswerMotion(MotionError(none->id, WhyOf(*none)));
     }
     const sm::Message& message = std::get<sm::Message>(front);
     unhandled_.erase(0, SizeOf(message));
@@ -128,7 +154,11 @@ void ArmEmulator::HandleMotion() {
       unhandled_.clear();
       return motion_.Close(motion_client_);
     }
-    if (reaction.answer) motion_.Send(motion_client_, sm::Encode(*reaction.answer));
+    if (reaction.same_again && !last_motion_answer_.empty()) {
+      AnswerMotion(std::string(last_motion_answer_));
+    } else if (reaction.answer) {
+      AnswerMotion(sm::Encode(*reaction.answer));
+    }
   }
   motion_.Pause(motion_client_, controller_.busy());
 }

@@ -23,6 +23,7 @@ struct ArmEmulatorConfig {
   double state_period_s = 0.025;
   double servo_on_s = 0.2;
   bool servo_on = false;  ///< Drives are powered at the start.
+  ArmServer server = ArmServer::kMotoRos1;
 };
 
 /// A YRC1000 with MotoROS 1 and High-Speed Ethernet Server over the drives of a cell's arm: one
@@ -71,6 +72,10 @@ class ArmEmulator : public Emulator {
 
  private:
   using Client = TcpServer::Client;
+  TcpServer::Admission AdmitMotion(int clients);
+  void JoinMotion(Client client);
+  void LeaveMotion(Client client);
+  void AnswerMotion(const std::string& answer);
   void ReceiveMotion(Client client, std::string_view bytes);
   void HandleMotion();
   void ReceiveIo(Client client, std::string_view bytes);
@@ -80,7 +85,9 @@ class ArmEmulator : public Emulator {
   ArmController controller_;
   HsesResponder responder_;
   std::string unhandled_;  ///< Of the motion client: what came behind a request that takes time.
+  std::string last_motion_answer_;
   Client motion_client_ = 0;
+  bool replacing_ = false;  ///< Who leaves now makes room for somebody else.
   std::uint64_t motion_bytes_ = 0;
   TimeNs next_state_{0};
   TcpServer motion_, state_, io_;

@@ -97,10 +97,14 @@ std::optional<sm::Body> ControllerIo::Answer(const sm::Body& request) {
   return std::visit(Answerer{*this, groups_}, request);
 }
 
-void ControllerIo::SetOutput(int number, bool on) {
-  std::uint8_t& group = groups_[GroupOfOutput(number)];
-  const auto bit = static_cast<std::uint8_t>(1u << ((number - 1) % 8));
+void ControllerIo::SetBit(std::int32_t address, bool on) {
+  std::uint8_t& group = groups_[address / 10];
+  const auto bit = static_cast<std::uint8_t>(1u << (address % 10));
   group = static_cast<std::uint8_t>(on ? group | bit : group & ~bit);
+}
+
+void ControllerIo::SetOutput(int number, bool on) {
+  SetBit(10 * GroupOfOutput(number) + (number - 1) % 8, on);
 }
 
 bool ControllerIo::Output(int number) const {

@@ -18,6 +18,8 @@ class ControllerIo {
   /// OUT#`number`, from 1; what MotoROS tells the cell by it is 889 to 896.
   void SetOutput(int number, bool on);
   bool Output(int number) const;
+  /// Any bit, by its address.
+  void SetBit(std::int32_t address, bool on);
 
   /// Whole groups by address (a bit's / 10), for supervision. Nothing: no such address.
   std::optional<std::uint8_t> Group(std::int32_t address) const;
