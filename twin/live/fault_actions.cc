@@ -46,12 +46,9 @@ Actions ArmActions() {
       {"protective_stop", Once([](auto& cell, auto&) { cell.arm().ProtectiveStop(); })},
       {"hold", [](auto& cell, auto&, bool undo) { cell.arm().Hold(!undo); }},
       {"servo_off", [](auto& cell, auto&, bool undo) { cell.arm().SwitchServo(undo); }},
-      {"stick_job",
-       [](auto& cell, auto&, bool undo) { cell.arm().controller().StickJob(!undo); }},
-      {"limit_speed",
-       [](auto& cell, auto& f, bool undo) {
-         cell.arm().controller().LimitSpeed(undo ? 0.0 : f.value);
-       }},
+      {"stick_job", [](auto& cell, auto&, bool undo) { cell.arm().controller().StickJob(!undo); }},
+      {"limit_speed", [](auto& cell, auto& f,
+                         bool undo) { cell.arm().controller().LimitSpeed(undo ? 0.0 : f.value); }},
       {"local", [](auto& cell, auto&, bool undo) { cell.arm().SetRemote(undo); }},
       {"teach", [](auto& cell, auto&, bool undo) { cell.arm().SetPlay(undo); }},
   };

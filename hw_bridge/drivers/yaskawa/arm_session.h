@@ -82,10 +82,10 @@ class ArmSession {
   ArmState state_;  ///< Time, q and qd of the newest feedback; the last motion's end.
   bool heard_ = false;
   std::optional<simple_message::RobotStatus> status_;
-  int statuses_ = 0;      ///< That came.
-  int believe_from_ = 0;  ///< Older ones may be from before the last change.
+  int statuses_ = 0;            ///< That came.
+  int believe_from_ = 0;        ///< Older ones may be from before the last change.
   double started_at_s_ = -1e9;  ///< When trajectory mode was said to be on.
-  std::string lost_;      ///< Why the link is lost; empty: it is not.
+  std::string lost_;            ///< Why the link is lost; empty: it is not.
   std::optional<ArmTrouble> latch_;
   /// What ended a motion, until the controller has said whether it knows more of it.
   std::optional<ArmTrouble> pending_;

@@ -139,9 +139,8 @@ std::optional<StreamedMotion::Problem> StreamedMotion::TakeCount(int count, doub
   counts_.push_back({now_s, executed_s});
   if (empty_) counts_.clear();
   if (counts_.size() > kSlowCounts) counts_.pop_front();
-  held_back_ = counts_.size() == kSlowCounts &&
-               executed_s - counts_.front().executed_s <
-                   kSlowShare * (now_s - counts_.front().at_s);
+  held_back_ = counts_.size() == kSlowCounts && executed_s - counts_.front().executed_s <
+                                                    kSlowShare * (now_s - counts_.front().at_s);
   anchor_s_ = executed_s;
   anchor_at_s_ = now_s;
   if (!empty_ || accepted_.qd.cwiseAbs().maxCoeff() < kStanding_rad_s) return std::nullopt;

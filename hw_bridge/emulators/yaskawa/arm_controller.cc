@@ -100,8 +100,7 @@ void ArmController::RunQueue() {
 double ArmController::Rate(const JointVector& qd) {
   double allowed = 1.0;
   if (speed_limit_m_s_ > 0.0) {
-    const JacobianMatrix J =
-        Jacobian(model_, arm_.Servo().q_commanded, RigidTransform::Identity());
+    const JacobianMatrix J = Jacobian(model_, arm_.Servo().q_commanded, RigidTransform::Identity());
     const double speed_m_s = (J * qd).head<3>().norm();
     if (speed_m_s > speed_limit_m_s_) allowed = speed_limit_m_s_ / speed_m_s;
   }

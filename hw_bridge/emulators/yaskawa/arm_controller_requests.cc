@@ -67,7 +67,8 @@ std::optional<std::int32_t> ArmController::WhyNotBegin(const sm::JointPoint& poi
   const double to_pulses = 1.0 / PulseAngle();
   const JointVector commanded = arm_.Servo().q_commanded;
   for (int i = 0; i < kNumJoints; ++i) {
-    const double off = std::trunc(point.q_rad[i] * to_pulses) - std::trunc(commanded[i] * to_pulses);
+    const double off =
+        std::trunc(point.q_rad[i] * to_pulses) - std::trunc(commanded[i] * to_pulses);
     if (std::abs(off) > kStartPulses) return Code(sm::Invalid::kStartPosition);
     // Axis by axis, as the controller does.
     if (TooFast(point.qd_rad_s, i + 1)) return Code(sm::Invalid::kSpeed);
