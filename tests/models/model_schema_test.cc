@@ -1,4 +1,4 @@
-#include "models/model_schema.h"
+#include "models/files/model_schema.h"
 
 #include <algorithm>
 

@@ -5,8 +5,8 @@
 #include "models/base/error.h"
 #include "models/base/json.h"
 #include "models/base/text.h"
+#include "models/files/model_schema.h"
 #include "models/model_file.h"
-#include "models/model_schema.h"
 #include "twin/app/common.h"
 #include "twin/round/scenario_check.h"
 

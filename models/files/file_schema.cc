@@ -4,7 +4,7 @@
 
 #include "models/base/error.h"
 #include "models/base/text.h"
-#include "models/model_schema.h"
+#include "models/files/model_schema.h"
 #include "models/part.h"
 
 namespace tubetwin {
