@@ -152,6 +152,23 @@ Vector3 MotionDirection_K(const Cell& cell, const JointTrajectory& trajectory, d
   return R_BK.transpose() * v_B.normalized();
 }
 
+/// What stands between a command and the state in which the fingers came to rest after it, from
+/// `before_m` on: a gripper that met something on a way that it was not told to go.
+std::optional<WaitOutcome> WrongWay(const GripperCommand& command, double before_m,
+                                    const GripperState& state) {
+  constexpr double kSamePlace_m = 0.002;
+  const double way_m = command.opening_m - before_m;
+  const bool wrong = way_m > kSamePlace_m
+                         ? state.object == GripperObject::kContactClosing
+                         : way_m < -kSamePlace_m && state.object == GripperObject::kContactOpening;
+  if (!wrong) return std::nullopt;
+  return WaitOutcome{WaitOutcome::Status::kGripperFault,
+                     std::string("gripper: was told to ") + (way_m > 0.0 ? "open" : "close") +
+                         " and says that it met something while it " +
+                         (way_m > 0.0 ? "closed" : "opened"),
+                     0.0};
+}
+
 }  // namespace
 
 const char* ToString(WaitOutcome::Status status) {
@@ -240,6 +257,7 @@ GripperOutcome MoveGripper(Cell& cell, const GripperCommand& command) {
     result.outcome = *trouble;
     return result;
   }
+  const double before_m = result.state.opening_m;
   cell.gripper.Command(command);
   const TimeNs end = cell.clock.Now() + FromSeconds(kGripperTimeout_s);
   result.state = cell.gripper.State();
@@ -255,7 +273,9 @@ GripperOutcome MoveGripper(Cell& cell, const GripperCommand& command) {
     PassPeriod(cell);
     result.state = cell.gripper.State();
   }
-  if (auto trouble = GripperTrouble(cell, result.state)) result.outcome = *trouble;
+  auto trouble = GripperTrouble(cell, result.state);
+  if (!trouble) trouble = WrongWay(command, before_m, result.state);
+  if (trouble) result.outcome = *trouble;
   return result;
 }
 
@@ -310,7 +330,12 @@ OrganizedCloud Scan(Cell& cell) {
   if (cell.scanner.Status() != ScanStatus::kReady) {
     throw Error(ErrorKind::kDevice, "scanner: scan failed: " + cell.scanner.FailureReason());
   }
-  return cell.scanner.Take();
+  OrganizedCloud cloud = cell.scanner.Take();
+  if (!cloud.X_NS.matrix().allFinite()) {
+    throw Error(ErrorKind::kDevice,
+                "arm: its joints' positions are no numbers: nobody knows where was scanned from");
+  }
+  return cloud;
 }
 
 WaitOutcome RecoverArm(Cell& cell) {

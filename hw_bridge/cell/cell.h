@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "hw_bridge/cell/devices.h"
 #include "hw_bridge/cell/safety.h"
 #include "models/bin.h"
@@ -18,8 +21,9 @@ struct Cell {
   const CellModel& model;
   Bin bin;
   SafetyLimits safety;
-  /// Set while a tube that was weighed is carried: from here on losing it ends a motion.
-  bool carrying = false;
+  /// Set while a tube that was weighed is carried, to the fingers' opening on it: from here on
+  /// losing it ends a motion, and so do fingers that open.
+  std::optional<double> carried_opening_m = {};
   /// Set when the first tube was placed: the cell is set up right, and start_speed_m_s is over.
   bool proven = false;
 };
@@ -41,8 +45,8 @@ struct WaitOutcome {
     kEmergencyStop,
     kFault,         ///< The controller's own: alarm, not ready.
     kLinkLost,      ///< The arm no longer says where it is.
-    kSensorFault,   ///< The wrist is silent or saturated where its wrench matters.
-    kGripperFault,  ///< A fault code, or the gripper is silent.
+    kSensorFault,   ///< The wrist is silent, saturated or wrong where its wrench matters.
+    kGripperFault,  ///< A fault code, silence, or what the gripper does is not what it was told.
     kObjectLost,    ///< The fingers have closed on nothing while a tube was carried.
   } status = Status::kDone;
   std::string reason;

@@ -94,6 +94,8 @@ struct GripperState {
   double opening_m = 0.0;  ///< Quantised like the real register.
   double requested_m = 0.0;
   int fault = 0;  ///< Register gFLT.
+  std::string
+      problem;  ///< Why its driver does not trust it, as "another client ..."; empty: it does.
 };
 
 class Gripper {
@@ -109,6 +111,7 @@ struct WrenchSample {
   TimeNs time{0};
   Wrench wrench_K;  ///< Load on the sensor, see Wrench. Not tared.
   bool saturated = false;
+  std::string problem;  ///< Why this is no measurement, whatever the numbers say; empty: it is one.
 };
 
 class ForceTorqueSensor {

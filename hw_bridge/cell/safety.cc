@@ -16,6 +16,12 @@ void SafetyLimits::Visit(ConfigVisitor& v) {
           deviation_deg, {0.1, 10});
   v.Field("hold_s", "how long a controller may hold the arm back before the motion is given up",
           hold_s, {1, 3600});
+  v.NumbersOrNone(
+      "empty_load_N",
+      "what the wrist tells along gravity with empty fingers pointing down, one number; "
+      "a round begins only where it tells no tube more; empty: the weight of the cell "
+      "model's tool",
+      empty_load_N, 1);
   v.Field("max_speed_m_s", "trajectories are stretched until the fingers move no faster; 0: never",
           max_speed_m_s, {0, 2});
 }

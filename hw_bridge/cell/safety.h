@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "models/base/config/config.h"
 
 namespace tubetwin {
@@ -13,6 +15,9 @@ struct SafetyLimits {
   double gripper_silence_s = 0.5;  ///< Age of the newest gripper state.
   double deviation_deg = 3.0;      ///< Of any joint from the path, wherever along it.
   double hold_s = 120.0;           ///< How long a controller may hold the arm back.
+  /// What the wrist tells along gravity with empty fingers, tool down, one number; none: what the
+  /// cell model's tool weighs.
+  std::vector<double> empty_load_N;
   /// Trajectories are stretched until E moves no faster; 0: as planned.
   double max_speed_m_s = 0.0;
   /// The same until Cell::proven; 0: no other limit. A real arm's own, so not visited here.

@@ -15,6 +15,12 @@ constexpr int kFirstGripperFault = 0x08;
 constexpr double kPathBehind_s = 1.0, kPathAhead_s = 0.2, kPathStep_s = 0.02;
 constexpr double kSpeedStep_s = 0.005;
 constexpr double kNoOpening_m = 0.004;
+/// Fingers that hold a tube do not give way so far.
+constexpr double kOpened_m = 0.005;
+/// Readings are rounded to steps that need not end on the range.
+constexpr double kRangeSlack = 1.001;
+constexpr const char* kWristAxes[] = {"force x",  "force y",  "force z",
+                                      "torque x", "torque y", "torque z"};
 
 std::string Number(const char* format, double value) {
   char text[64];
@@ -24,6 +30,12 @@ std::string Number(const char* format, double value) {
 
 WaitOutcome Trouble(WaitOutcome::Status status, const std::string& reason, double progress_s = 0) {
   return {status, reason, progress_s};
+}
+
+/// Of an arm that says that it is nowhere: it is as good as silent.
+WaitOutcome NoPlace(const ArmState& state) {
+  return Trouble(WaitOutcome::Status::kLinkLost, "arm: its joints' positions are no numbers",
+                 state.progress_s);
 }
 
 double Age_s(const Cell& cell, TimeNs time) { return Seconds(cell.clock.Now() - time); }
@@ -45,10 +57,28 @@ double OffPath_rad(const JointVector& q, const JointTrajectory& path, double pro
   return min_off_rad;
 }
 
+/// What the fingers say against a tube that they carry, or nothing.
+std::optional<WaitOutcome> CarriedTrouble(const Cell& cell, const GripperState& fingers) {
+  if (!cell.carried_opening_m) return std::nullopt;
+  if (fingers.object == GripperObject::kAtPosition && fingers.requested_m < kNoOpening_m) {
+    return Trouble(WaitOutcome::Status::kObjectLost, "gripper: closed to " +
+                                                         Number("%.1f", 1e3 * fingers.opening_m) +
+                                                         " mm while a tube was carried");
+  }
+  if (fingers.opening_m > *cell.carried_opening_m + kOpened_m) {
+    return Trouble(WaitOutcome::Status::kGripperFault,
+                   "gripper: opened from " + Number("%.1f", 1e3 * *cell.carried_opening_m) +
+                       " to " + Number("%.1f", 1e3 * fingers.opening_m) +
+                       " mm while a tube was carried, and not by this program");
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<WaitOutcome> RefuseStart(const Cell& cell, const CheckedTrajectory& trajectory) {
   const ArmState state = cell.arm.State();
+  if (!state.q.allFinite()) return NoPlace(state);
   if (state.mode == ArmMode::kDisconnected) {
     return Trouble(WaitOutcome::Status::kLinkLost, "arm is disconnected: " + state.fault);
   }
@@ -91,19 +121,34 @@ std::optional<WaitOutcome> GripperTrouble(const Cell& cell, const GripperState& 
   }
   if (state.fault >= kFirstGripperFault) return trouble("fault " + std::to_string(state.fault));
   if (!state.activated) return trouble("not activated");
+  if (!state.problem.empty()) return trouble(state.problem);
+  if (!std::isfinite(state.opening_m)) return trouble("its opening is no number");
   return std::nullopt;
 }
 
 std::optional<WaitOutcome> WristTrouble(const Cell& cell, const WrenchSample& sample,
                                         double patience) {
+  const auto trouble = [](const std::string& reason) {
+    return Trouble(WaitOutcome::Status::kSensorFault, "wrist: " + reason);
+  };
+  if (!sample.problem.empty()) return trouble(sample.problem);
+  const Vector3 &force_N = sample.wrench_K.force_N, &torque_Nm = sample.wrench_K.torque_Nm;
+  for (int axis = 0; axis < 6; ++axis) {
+    const double reading = axis < 3 ? force_N[axis] : torque_Nm[axis - 3];
+    const double range = cell.model.wrist.range[static_cast<std::size_t>(axis)];
+    if (std::abs(reading) <= kRangeSlack * range) continue;  // Not so for what is no number.
+    const char* const unit = axis < 3 ? " N" : " N m";
+    return trouble(std::string(kWristAxes[axis]) + " is " + Number("%.1f", reading) + unit +
+                   ", its range ends at " + Number("%.1f", range) + unit);
+  }
   const double age_s = Age_s(cell, sample.time);
   if (age_s <= patience * cell.safety.wrist_silence_s) return std::nullopt;
-  return Trouble(WaitOutcome::Status::kSensorFault,
-                 "wrist: newest wrench is " + Number("%.3f", age_s) + " s old");
+  return trouble("newest wrench is " + Number("%.3f", age_s) + " s old");
 }
 
 std::optional<WaitOutcome> MotionTrouble(const Cell& cell, const ArmState& state,
                                          const JointTrajectory* path) {
+  if (!state.q.allFinite()) return NoPlace(state);
   const double age_s = Age_s(cell, state.time);
   if (age_s > cell.safety.arm_silence_s) {
     return Trouble(WaitOutcome::Status::kLinkLost,
@@ -121,18 +166,10 @@ std::optional<WaitOutcome> MotionTrouble(const Cell& cell, const ArmState& state
     }
   }
   const GripperState fingers = cell.gripper.State();
-  if (auto trouble = GripperTrouble(cell, fingers)) {
-    trouble->progress_s = state.progress_s;
-    return trouble;
-  }
-  if (cell.carrying && fingers.object == GripperObject::kAtPosition &&
-      fingers.requested_m < kNoOpening_m) {
-    return Trouble(WaitOutcome::Status::kObjectLost,
-                   "gripper: closed to " + Number("%.1f", 1e3 * fingers.opening_m) +
-                       " mm while a tube was carried",
-                   state.progress_s);
-  }
-  return std::nullopt;
+  auto trouble = GripperTrouble(cell, fingers);
+  if (!trouble) trouble = CarriedTrouble(cell, fingers);
+  if (trouble) trouble->progress_s = state.progress_s;
+  return trouble;
 }
 
 }  // namespace tubetwin

@@ -93,6 +93,7 @@ GripperRead ReadGripper(EventContext& c, ByteReader& in) {
     s.opening_m = in.F64();
     s.requested_m = in.F64();
   }
+  if (flags & kProblem) s.problem = in.Text();
   return {s};
 }
 
@@ -105,6 +106,7 @@ WristRead ReadWrist(EventContext& c, ByteReader& in) {
     for (int i = 0; i < 3; ++i) s.wrench_K.force_N[i] = c.wrench[i].Read(in);
     for (int i = 0; i < 3; ++i) s.wrench_K.torque_Nm[i] = c.wrench[3 + i].Read(in);
   }
+  if (flags & kProblem) s.problem = in.Text();
   return {s};
 }
 

@@ -107,7 +107,8 @@ class Writer {
                          s.fault != last.fault || !SameBits(s.opening_m, last.opening_m) ||
                          !SameBits(s.requested_m, last.requested_m);
     Put(Tag::kGripperRead);
-    const std::uint8_t flags = TimeFlag(s.time, last.time, c_.now) | (changed ? kRest : 0);
+    std::uint8_t flags = TimeFlag(s.time, last.time, c_.now) | (changed ? kRest : 0);
+    if (s.problem != last.problem) flags |= kProblem;
     out_.U8(flags);
     if (flags & kTimeOther) WriteTime(s.time, c_.now, out_);
     if (changed) {
@@ -117,6 +118,7 @@ class Writer {
       out_.F64(s.opening_m);
       out_.F64(s.requested_m);
     }
+    if (flags & kProblem) out_.Text(s.problem);
     last = s;
   }
   void operator()(const GripperCommanded& e) {
@@ -194,11 +196,13 @@ void Writer::operator()(const WristRead& e) {
   }
   if (changed) flags |= kNumbers;
   if (s.saturated) flags |= kSaturated;
+  if (s.problem != c_.wrist.problem) flags |= kProblem;
   Put(Tag::kWristRead);
   out_.U8(flags);
   if (flags & kTimeOther) WriteTime(s.time, c_.now, out_);
   for (int i = 0; i < 3 && changed; ++i) c_.wrench[i].Write(s.wrench_K.force_N[i], out_);
   for (int i = 0; i < 3 && changed; ++i) c_.wrench[3 + i].Write(s.wrench_K.torque_Nm[i], out_);
+  if (flags & kProblem) out_.Text(s.problem);
   c_.wrist = s;
 }
 

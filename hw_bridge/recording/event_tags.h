@@ -38,6 +38,7 @@ inline constexpr std::uint8_t kTimeOther = 2;  ///< A difference to the cell's t
 inline constexpr std::uint8_t kRest = 4;       ///< What seldom changes.
 inline constexpr std::uint8_t kNumbers = 8;    ///< What often changes.
 inline constexpr std::uint8_t kMoreNumbers = 16;
+inline constexpr std::uint8_t kProblem = 16;  ///< Of gripper and wrist: another text of its driver.
 inline constexpr std::uint8_t kProgressOn = 32;  ///< One control period on.
 inline constexpr std::uint8_t kProgressOther = 64;
 inline constexpr std::uint8_t kSaturated = 128;

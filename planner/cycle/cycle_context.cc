@@ -23,7 +23,7 @@ void CycleContext::BeginPhases() {
 }
 
 void CycleContext::Released() {
-  cell.carrying = false;
+  cell.carried_opening_m.reset();
   cell.arm.SetPayload(0.0, Vector3::Zero());
   held = {};
 }

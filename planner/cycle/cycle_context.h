@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,9 @@ struct CycleContext {
   GripperGeometry gripper;
   ResolutionStrategy strategy;
   std::vector<ExtractionMotion> motions;
-  AttemptReport report;  ///< Of the running attempt.
-  Wrench reference_K;    ///< Tare with empty fingers, tool vertical.
+  AttemptReport report;                     ///< Of the running attempt.
+  Wrench reference_K;                       ///< Tare with empty fingers, tool vertical.
+  std::optional<Wrench> first_reference_K;  ///< The round's first.
   TimeNs attempt_began{0};
   HeldPart held;                   ///< How far what the fingers hold sags and how slowly it swings.
   std::vector<Polyline> placed_T;  ///< Tubes on the tray, as they were laid.

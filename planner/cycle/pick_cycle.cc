@@ -6,6 +6,7 @@ namespace tubetwin {
 
 RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer) {
   Round round(cell, setup, observer);
+  if (auto end = round.Begin()) return *end;
   for (;;) {
     if (setup.stop_requested && setup.stop_requested()) {
       return round.End(RoundEnd::kInterrupted, "asked to stop");

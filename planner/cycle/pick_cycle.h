@@ -52,13 +52,15 @@ struct PickCycleSetup {
   EvaluateFunction evaluate;
   Parallelism parallelism;
   std::function<bool()> stop_requested;  ///< Asked between attempts; may be empty.
-  /// Asked after a protective or emergency stop or an alarm, with what happened: only kGoOn, a
-  /// person's word that the cause is gone, lets the cycle go on. Empty: nobody is there.
+  /// Asked after a protective or emergency stop or an alarm, and before what an earlier program
+  /// left in the fingers is put back, with what happened: only kGoOn, a person's word that the
+  /// cause is gone, lets the cycle go on. Empty: nobody is there.
   std::function<Acknowledgement(const std::string&)> acknowledge;
 };
 
-/// Empties the bin: scan, model, plan, approach, grasp, weigh, resolve, place, until the scan shows
-/// an empty bin or nothing can be taken. Does not know whether the cell is simulated.
+/// Empties the bin, unless something is left in the fingers from before (see left_over.h): scan,
+/// model, plan, approach, grasp, weigh, resolve, place, until the scan shows an empty bin or
+/// nothing can be taken. Does not know whether the cell is simulated.
 RoundReport RunPickCycle(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer);
 
 /// The rest of the attempt in which a cell was stored: resolution, then placing or putting back,

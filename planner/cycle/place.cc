@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "planner/cycle/round_steps.h"
 #include "planner/grasp/placement.h"
@@ -10,6 +11,7 @@ constexpr double kPlaceGap_m = 0.003;      ///< E stops this far above touching 
 constexpr double kAbovePlace_m = 0.20;     ///< Last weighing: above all that lies on the tray.
 constexpr double kGuardedPlace_m = 0.035;  ///< From here on what lies on the tray may be met.
 constexpr double kWeighAbove_s = 0.3;
+constexpr double kOffSlot_m = 0.02;  ///< The arm may be so far from where it was planned to be.
 
 constexpr int kMaxSlotsTried = 6;
 
@@ -79,27 +81,41 @@ std::variant<Placement, StepOutcome> PlanPlace(const CycleContext& c, const Poly
 HeldStep Carry(CycleContext& c, const Placement& placement) {
   const CycleContext::During carrying(c, &AttemptReport::Phases::carry);
   c.observer.OnStep("carrying to slot " + std::to_string(placement.pose.slot + 1));
-  c.cell.carrying = true;
+  c.cell.carried_opening_m = c.cell.gripper.State().opening_m;
   const StepOutcome carried = c.Run(placement.path, kCarryStage);
   if (carried.device == WaitOutcome::Status::kObjectLost) {
-    c.cell.carrying = false;
+    c.cell.carried_opening_m.reset();
     c.executor.Resync();
     c.report.reason = carried.reason;
-    const Weighing weighing = Weigh(c, kWeighAbove_s);
-    if (!weighing.step.ok()) return {weighing.step, HeldOutcome::kNone};
-    if (weighing.detection.outcome == HeldOutcome::kNone) return {{}, HeldOutcome::kNone};
-    // Opening on the word of one of the two could drop a tube.
-    return {{StepOutcome::Status::kTrouble, WaitOutcome::Status::kRejected,
-             carried.reason + ", but the wrist still weighs one"},
-            HeldOutcome::kOne};
+    const Weighing weighing = WeighHeld(c, kWeighAbove_s);
+    return {weighing.step, weighing.detection.outcome};
   }
   if (!carried.ok()) return {carried, HeldOutcome::kOne};
-  const Weighing weighing = Weigh(c, kWeighAbove_s);
+  const Detection* const before = c.report.detection ? &*c.report.detection : nullptr;
+  const Weighing weighing = WeighHeld(c, kWeighAbove_s, before);
   if (!weighing.step.ok()) return {weighing.step, HeldOutcome::kOne};
   if (weighing.detection.outcome == HeldOutcome::kNone) {
     c.report.reason = "nothing hangs in the fingers over the tray";
   }
   return {{}, weighing.detection.outcome};
+}
+
+/// Whether the fingers may let go here: the arm says that it stands low over the slot, and the
+/// gripper that it still holds the tube. Trouble when either says something else.
+StepOutcome MayLetGo(const CycleContext& c, const PlacementPose& pose) {
+  const RigidTransform X_BE = c.executor.planner().PoseOfE(c.cell.arm.State().q);
+  const Vector3 off_B = X_BE.translation() - pose.X_BE.translation();
+  const auto trouble = [](const std::string& reason) {
+    return StepOutcome::Trouble({WaitOutcome::Status::kDeviated, reason, 0.0}, "letting go");
+  };
+  // Not so for what is no number.
+  if (!(off_B.head<2>().norm() < kOffSlot_m && off_B.z() < kGuardedPlace_m + kOffSlot_m)) {
+    return trouble("the arm stands " + std::to_string(std::lround(1e3 * off_B.norm())) +
+                   " mm from where the tube is to be laid");
+  }
+  const GripperState fingers = c.cell.gripper.State();
+  if (fingers.object == GripperObject::kAtPosition) return trouble("the gripper holds nothing");
+  return {};
 }
 
 }  // namespace
@@ -110,11 +126,15 @@ PlaceStep Place(CycleContext& c, const Polyline& line_E) {
   const Placement& placement = std::get<Placement>(planned);
   const HeldStep carried = Carry(c, placement);
   if (!carried.step.ok()) return {carried.step};
-  if (carried.held == HeldOutcome::kNone) return {{}, AttemptOutcome::kDropped};
+  if (carried.held == HeldOutcome::kNone) {
+    c.cell.carried_opening_m.reset();
+    return {{}, AttemptOutcome::kDropped};
+  }
   const CycleContext::During placing(c, &AttemptReport::Phases::place);
   c.observer.OnStep("laying down");
   if (StepOutcome lowered = c.Run(placement.path, kLowerStage); !lowered.ok()) return {lowered};
-  c.cell.carrying = false;
+  c.cell.carried_opening_m.reset();
+  if (StepOutcome may = MayLetGo(c, placement.pose); !may.ok()) return {may};
   StepOutcome released = c.Run(placement.path, kReleaseStage);
   if (!released.ok()) return {released};
   c.Released();

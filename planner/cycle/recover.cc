@@ -81,7 +81,7 @@ StepOutcome LetGo(CycleContext& c, double opening_m, double rest_s) {
   PathBuilder open = c.Path();
   open.Open("letting go", opening_m);
   if (rest_s > 0.0) open.Pause("rest", rest_s);
-  c.cell.carrying = false;
+  c.cell.carried_opening_m.reset();
   if (StepOutcome step = c.CheckAndRun(open.path()); !step.ok()) return step;
   c.Released();
   PathBuilder up = c.Path();
@@ -107,8 +107,15 @@ StepOutcome PutBack(CycleContext& c) {
   return LetGo(c, c.ReleaseOpening(), kRest_s);
 }
 
+Acknowledgement PutBackLeftOver(CycleContext& c, const std::string& left) {
+  if (!c.setup.acknowledge) return Acknowledgement::kEnd;
+  const std::string what = left + ". It will be put back into the bin, slowly.";
+  if (c.setup.acknowledge(what) != Acknowledgement::kGoOn) return Acknowledgement::kEnd;
+  return RetreatAndPutBack(c).ok() ? Acknowledgement::kGoOn : Acknowledgement::kEnd;
+}
+
 Acknowledgement GoOnAfterStop(CycleContext& c, const StepOutcome& trouble) {
-  c.cell.carrying = false;
+  c.cell.carried_opening_m.reset();
   if (!c.setup.acknowledge || !MayBeAcknowledged(trouble.device)) return Acknowledgement::kEnd;
   if (c.setup.acknowledge(trouble.reason) != Acknowledgement::kGoOn) return Acknowledgement::kEnd;
   c.observer.OnStep("going on after a stop");

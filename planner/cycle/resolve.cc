@@ -50,7 +50,7 @@ HeldStep Resolve(CycleContext& c, const Vector3& load_torque_K) {
   for (int stage = 0; stage < path.num_stages() && held == HeldOutcome::kSeveral; ++stage) {
     c.observer.OnStep("several held: " + CaptionOf(path, stage));
     if (StepOutcome step = c.Run(path, stage); !step.ok()) return {step};
-    const Weighing weighing = Weigh(c, c.setup.cycle.settle_s);
+    const Weighing weighing = WeighHeld(c, c.setup.cycle.settle_s);
     if (!weighing.step.ok()) return {weighing.step};
     held = weighing.detection.outcome;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hw_bridge/cell/left_over.h"
 #include "models/base/error.h"
 #include "planner/pick/pick_planner.h"
 #include "planner/pick/runnable_plan.h"
@@ -14,14 +15,32 @@ namespace {
 
 constexpr double kSameGrasp_m = 0.015;     ///< A grasp this near a failed one is the same again.
 constexpr double kContactSlack_m = 0.004;  ///< Contact this near the grasp still closes.
-constexpr double kBeforeTare_s = 0.3;
-constexpr double kFirstSettle_s = 0.1;  ///< Of the load, at most, after the small lift.
+constexpr double kFirstSettle_s = 0.1;     ///< Of the load, at most, after the small lift.
 constexpr int kMaxRefusals = 5;  ///< Attempts of one round that these may end with a tube held.
 
 }  // namespace
 
 Round::Round(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer)
     : c_(cell, setup, observer), views_(c_) {}
+
+std::string Round::LeftOver() const {
+  const Cell& cell = c_.cell;
+  const std::string fingers = LeftInFingers(cell.gripper.State());
+  if (!fingers.empty()) return fingers;
+  return LeftOnWrist(cell.wrist.Read(), cell.arm.State().q, cell.model, cell.safety,
+                     c_.setup.part.mass_kg);
+}
+
+std::optional<RoundReport> Round::Begin() {
+  const std::string left = LeftOver();
+  if (left.empty()) return std::nullopt;
+  if (PutBackLeftOver(c_, left) == Acknowledgement::kGoOn && LeftOver().empty()) {
+    return std::nullopt;
+  }
+  return End(RoundEnd::kFault, left +
+                                   ": left there by an earlier program; take it out, or run at a "
+                                   "terminal and let it be put back into the bin");
+}
 
 bool Round::AttemptsLeft() const {
   return first_count_ < 0 || attempts_ < c_.setup.cycle.attempts_per_tube * first_count_ + 10;
@@ -200,18 +219,6 @@ Round::AttemptStep Round::Pick(const Decision& decision) {
   return FinishHeld(decision.plan, line_E, weighing.detection);
 }
 
-// The tool weighs pointing down, so its own weight is taken off pointing down.
-StepOutcome Round::Tare() {
-  const CycleContext::Timed timed(c_, &AttemptReport::SimTime::settle);
-  const CycleContext::During weighing(c_, &AttemptReport::Phases::weigh);
-  Wait(c_.cell, kBeforeTare_s);
-  const MeanWrench tare = MeasureWrench(c_, c_.setup.cycle.weigh_window_s);
-  if (!tare.step.ok()) return tare.step;
-  c_.reference_K = tare.mean_K;
-  c_.observer.OnReference(c_.reference_K);
-  return {};
-}
-
 // Approach, guarded descent, closing.
 Round::GraspStep Round::GraspTube(const Decision& decision) {
   const PickPlan& plan = decision.plan;
@@ -220,7 +227,8 @@ Round::GraspStep Round::GraspTube(const Decision& decision) {
                      ToString(plan.target_class) + "), motion " + plan.motion.name);
   const CycleContext::During reaching(c_, &AttemptReport::Phases::reach);
   if (StepOutcome step = c_.Run(path, kApproachStage); !step.ok()) return {step, ""};
-  if (StepOutcome step = Tare(); !step.ok()) return {step, ""};
+  // The tool weighs pointing down, so its own weight is taken off pointing down.
+  if (StepOutcome step = Tare(c_); !step.ok()) return {step, ""};
   const StepOutcome descent = c_.Run(path, kDescendStage);
   if (!descent.ok()) return {descent, ""};
   const RigidTransform X_BE =
@@ -251,7 +259,7 @@ Weighing Round::LiftAndWeigh(const Decision& decision) {
   c_.observer.OnStep("lifting (" + decision.plan.motion.name + ")");
   if (StepOutcome step = c_.Run(path, kMotionStage); !step.ok()) return {step, {}};
   c_.observer.OnStep("weighing");
-  Weighing weighing = Weigh(c_, c_.setup.cycle.settle_s);
+  Weighing weighing = WeighHeld(c_, c_.setup.cycle.settle_s);
   if (!weighing.step.ok()) return weighing;
   c_.report.detection = weighing.detection;
   c_.observer.OnDetection(weighing.detection);
@@ -283,14 +291,13 @@ Round::AttemptStep Round::FinishHeld(const PickPlan& plan, const Polyline& line_
 
 Round::AttemptStep Round::GiveUpHeld(const PickPlan& plan, HeldOutcome held) {
   Remember(plan);
-  const bool lost = c_.cell.gripper.State().opening_m < kNothingOpening_m;
   const StepOutcome back = PutBack(c_);
   if (!back.ok()) return {back};
   if (held == HeldOutcome::kSeveral) {
     c_.report.reason = "several tubes hung in the fingers";
     return {{}, AttemptOutcome::kPutBack};
   }
-  c_.report.reason = lost ? "the tube slipped out of the fingers" : "no weight in the fingers";
+  c_.report.reason = "the tube slipped out of the fingers";
   return {{}, AttemptOutcome::kNothingHeld};
 }
 

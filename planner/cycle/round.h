@@ -18,6 +18,9 @@ class Round {
  public:
   Round(Cell& cell, const PickCycleSetup& setup, CycleObserver& observer);
 
+  /// What is left in the fingers from before is put back, on a person's word; without it the round
+  /// ends before anything moves.
+  std::optional<RoundReport> Begin();
   bool AttemptsLeft() const;
   /// One attempt from the look to the end. What ends the round is the answer, if anything does.
   std::optional<RoundReport> Attempt();
@@ -55,7 +58,6 @@ class Round {
   Decision NothingLeft(const TubeScene& scene);
   AttemptStep Pick(const Decision& decision);
   GraspStep GraspTube(const Decision& decision);
-  StepOutcome Tare();
   Weighing LiftAndWeigh(const Decision& decision);
   AttemptStep FinishHeld(const PickPlan& plan, const Polyline& line_E, const Detection& detection);
   AttemptStep GiveUpHeld(const PickPlan& plan, HeldOutcome held);
@@ -70,6 +72,7 @@ class Round {
   bool FailedBefore(const PickPlan& plan) const;
   void Remember(const PickPlan& plan);
   bool HoldsSomething() const;
+  std::string LeftOver() const;
   /// Every tube that is left, with the first reason against it.
   std::string WhyNoPlan() const;
 

@@ -49,6 +49,9 @@ struct NudgeStep {
 };
 NudgeStep TryNudge(CycleContext& context, const PickProblem& problem);
 
+/// Puts what `left` says that is in the fingers back into the bin, slowly, on an operator's word.
+Acknowledgement PutBackLeftOver(CycleContext& context, const std::string& left);
+
 /// After a stop or fault of the arm: asks the operator, if there is one, and goes on only on their
 /// word: ready again, straight up, what is held back into the bin.
 Acknowledgement GoOnAfterStop(CycleContext& context, const StepOutcome& trouble);

@@ -1,5 +1,7 @@
 #include "planner/motion/path_executor.h"
 
+#include "models/base/text.h"
+
 namespace tubetwin {
 namespace {
 
@@ -27,8 +29,8 @@ PathExecutor::PathExecutor(Cell& cell)
 
 PathStart PathExecutor::Start() const {
   const JointVector measured = cell_.arm.State().q;
-  if (JointDistance(measured, start_.q) > kPushed_rad) return {measured, start_.opening_m};
-  return start_;
+  const bool pushed = JointDistance(measured, start_.q) > kPushed_rad && !Displaced();
+  return pushed ? PathStart{measured, start_.opening_m} : start_;
 }
 
 void PathExecutor::Resync() {
@@ -86,8 +88,22 @@ StepOutcome PathExecutor::RunFingers(const PathSegment& segment, const MoveFinge
   return {};
 }
 
+std::optional<WaitOutcome> PathExecutor::Displaced() const {
+  const JointVector measured = cell_.arm.State().q;
+  int worst = 0;
+  const double off_rad = (measured - start_.q).cwiseAbs().maxCoeff(&worst);
+  if (off_rad <= Radians(cell_.safety.deviation_deg)) return std::nullopt;
+  return WaitOutcome{WaitOutcome::Status::kDeviated,
+                     "joint " + std::to_string(worst + 1) + " is at " +
+                         Number(Degrees(measured[worst])) + " degrees, the last motion ended at " +
+                         Number(Degrees(start_.q[worst])) +
+                         ": the arm was moved, or its state is wrong",
+                     0.0};
+}
+
 StepOutcome PathExecutor::RunMotion(const CheckedPath::Segment& checked) {
   const PathSegment& segment = checked.segment;
+  if (auto displaced = Displaced()) return StepOutcome::Trouble(*displaced, segment.label);
   start_ = Start();
   CheckedTrajectory trajectory = *checked.trajectory;
   if (JointDistance(start_.q, checked.start.q) > kPushed_rad) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "hw_bridge/cell/cell.h"
@@ -41,7 +42,7 @@ class PathExecutor {
 
   const MotionPlanner& planner() const { return planner_; }
   /// Where the next motion starts: the end of the last one, the measured joints where one was
-  /// stopped or something pushed the arm.
+  /// stopped or something pushed the arm a little.
   PathStart Start() const;
   /// Where E is there.
   RigidTransform X_BE() const { return planner_.PoseOfE(Start().q); }
@@ -63,6 +64,9 @@ class PathExecutor {
   void Resume(const PathStart& start) { start_ = start; }
 
  private:
+  /// Nobody pushes an arm at rest further than it may leave its path: what it says is wrong then,
+  /// or somebody else moves it.
+  std::optional<WaitOutcome> Displaced() const;
   StepOutcome RunSegment(const CheckedPath::Segment& segment);
   StepOutcome RunMotion(const CheckedPath::Segment& segment);
   StepOutcome RunFingers(const PathSegment& segment, const MoveFingers& fingers);

@@ -1,5 +1,8 @@
 // What ends a motion, a grip and a weighing on any cell, and that nothing starts again by itself.
 
+#include <cmath>
+#include <limits>
+
 #include "tests/support/catch.h"
 #include "tests/support/fake_cell.h"
 #include "tests/support/paper_cell.h"
@@ -76,7 +79,7 @@ TEST_CASE("A fault or silence of the gripper stops the arm", "[unit]") {
 TEST_CASE("Fingers that close on nothing end a motion only while a tube is carried", "[unit]") {
   for (const bool carrying : {false, true}) {
     FakeCell fake;
-    fake.cell.carrying = carrying;
+    if (carrying) fake.cell.carried_opening_m = 0.0;
     fake.gripper.state.object = GripperObject::kContactClosing;
     fake.gripper.state.requested_m = 0.0;
     At(fake, 0.5, [&] { fake.gripper.state.object = GripperObject::kAtPosition; });
@@ -87,6 +90,85 @@ TEST_CASE("Fingers that close on nothing end a motion only while a tube is carri
       CHECK(outcome.status == Status::kDone);
     }
   }
+}
+
+TEST_CASE("Fingers that give way while a tube is carried end the motion", "[unit]") {
+  for (const double opened_m : {0.0295, 0.0305}) {  // 5 mm are the limit.
+    FakeCell fake;
+    fake.cell.carried_opening_m = 0.025;
+    fake.gripper.state.object = GripperObject::kContactClosing;
+    fake.gripper.state.opening_m = 0.025;
+    At(fake, 0.5, [&] { fake.gripper.state.opening_m = opened_m; });
+    const WaitOutcome outcome = RunTrajectory(fake.cell, fake.Move(0.2, 3.0));
+    if (opened_m < 0.03) {
+      CHECK(outcome.status == Status::kDone);
+    } else {
+      CheckStopped(fake, outcome, Status::kGripperFault, "opened from 25.0 to 30.5 mm", 0.01);
+    }
+  }
+}
+
+TEST_CASE("What a driver says against its gripper or wrist is the reason", "[unit]") {
+  FakeCell foreign;
+  At(foreign, 0.5, [&] { foreign.gripper.state.problem = "another client commands it"; });
+  CheckStopped(foreign, RunTrajectory(foreign.cell, foreign.Move(0.2, 3.0)), Status::kGripperFault,
+               "gripper: another client commands it", 0.01);
+  FakeCell stuck;
+  stuck.wrist.lie = [](WrenchSample& sample) { sample.problem = "always the same"; };
+  const WrenchOutcome weighed = AverageWrench(stuck.cell, 0.1);
+  CHECK(weighed.outcome.status == Status::kSensorFault);
+  CHECK_THAT(weighed.outcome.reason, Catch::Contains("wrist: always the same"));
+}
+
+TEST_CASE("A wrench beyond the sensor's range ends a guarded motion and a weighing", "[unit]") {
+  for (const int axis : {0, 1, 2, 3, 4, 5}) {
+    for (const double times : {1.0, -1.0, 1.01, -1.01, std::numeric_limits<double>::quiet_NaN()}) {
+      CAPTURE(axis, times);
+      FakeCell fake;
+      At(fake, 0.5, [&] {
+        const double reading = times * fake.model.wrist.range[static_cast<std::size_t>(axis)];
+        Wrench& load_K = fake.wrist.load_K;
+        (axis < 3 ? load_K.force_N[axis] : load_K.torque_Nm[axis - 3]) = reading;
+      });
+      const bool right = std::abs(times) == 1.0;
+      // So high a limit that no reading is a contact.
+      const WaitOutcome guarded = RunGuarded(fake.cell, fake.Move(0.2, 3.0), 1e6);
+      CHECK((guarded.status == Status::kDone) == right);
+      if (!right) CHECK(guarded.status == Status::kSensorFault);
+      CHECK((AverageWrench(fake.cell, 0.1).outcome.status == Status::kDone) == right);
+    }
+  }
+}
+
+TEST_CASE("A gripper that met something on the way that it was not told to go is at fault",
+          "[unit]") {
+  const auto moved = [](double from_m, double to_m, GripperObject object) {
+    FakeCell fake;
+    fake.gripper.state.opening_m = from_m;
+    fake.gripper.on_command = [&](const GripperCommand&) { fake.gripper.state.object = object; };
+    return MoveGripper(fake.cell, {to_m, 0.1, 60.0}).outcome;
+  };
+  CHECK(moved(0.08, 0.0, GripperObject::kContactClosing).status == Status::kDone);
+  CHECK(moved(0.025, 0.055, GripperObject::kContactOpening).status == Status::kDone);
+  CHECK(moved(0.025, 0.025, GripperObject::kContactClosing).status == Status::kDone);
+  const WaitOutcome open = moved(0.025, 0.055, GripperObject::kContactClosing);
+  CHECK(open.status == Status::kGripperFault);
+  CHECK_THAT(open.reason, Catch::Contains("told to open and says that it met something while it "
+                                          "closed"));
+  CHECK(moved(0.08, 0.0, GripperObject::kContactOpening).status == Status::kGripperFault);
+}
+
+TEST_CASE("An arm whose joints are no numbers neither starts nor goes on", "[unit]") {
+  const auto lie = [](ArmState& state) { state.q[4] = std::nan(""); };
+  FakeCell before;
+  const CheckedTrajectory move = before.Move(0.2, 3.0);
+  before.arm.lie = lie;
+  CHECK(RunTrajectory(before.cell, move).status == Status::kLinkLost);
+  CHECK(before.arm.started == 0);
+  FakeCell during;
+  At(during, 0.5, [&] { during.arm.lie = lie; });
+  CheckStopped(during, RunTrajectory(during.cell, during.Move(0.2, 3.0)), Status::kLinkLost,
+               "no numbers", 0.01);
 }
 
 TEST_CASE("A stop of the controller is the outcome, with its text, and nothing goes on", "[unit]") {

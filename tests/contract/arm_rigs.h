@@ -56,8 +56,7 @@ class DriverArmRig : public ArmContractRig {
               twin_.cell().scanner,
               twin_.cell().model,
               twin_.cell().bin,
-              SafetyLimits(),
-              false} {}
+              SafetyLimits()} {}
   Cell& cell() override { return cell_; }
   void Block(bool blocked) override {
     const std::lock_guard lock(mutex_);

@@ -72,8 +72,7 @@ class RigWorld {
 
 /// The same cell with other clock, gripper and sensor.
 inline Cell With(Cell& cell, CellClock& clock, Gripper& gripper, ForceTorqueSensor& wrist) {
-  return {clock,      cell.arm, gripper,        wrist, cell.scanner,
-          cell.model, cell.bin, SafetyLimits(), false};
+  return {clock, cell.arm, gripper, wrist, cell.scanner, cell.model, cell.bin, SafetyLimits()};
 }
 
 /// A world whose time runs by itself, with one emulator before it.

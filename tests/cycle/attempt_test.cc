@@ -268,16 +268,17 @@ TEST_CASE("A tube that slips out on the way up is noticed by weight and by the f
   }
 }
 
-TEST_CASE("Fingers that hold something without weight let it go over the bin", "[unit]") {
+TEST_CASE("Fingers that hold something without weight keep it, and the round ends", "[unit]") {
   Part feather = FakeWorld::ShortTube();
   feather.mass_kg = 0.005;
   FakeWorld world(TwoTubes(), FakeWorld::SmallBin(), feather);
   FakeRound round(world);
   round.setup.part.mass_kg = 0.055;
   round.Run(1);
-  CHECK(round.outcome(0) == "nothing_held");
-  CHECK(round.attempt(0).reason == "no weight in the fingers");
-  CHECK(world.Count(FakeTube::Place::kBin) == 2);
+  CHECK(round.outcome(0) == "fault");
+  CHECK_THAT(round.attempt(0).reason, Catch::Contains("the wrist weighs 0.0 N, the gripper says "
+                                                      "that it holds something of 25.0 mm"));
+  CHECK(world.held() == 1);
 }
 
 TEST_CASE("A tube lost while it is carried stops the arm, and the round goes on", "[unit]") {
@@ -291,7 +292,7 @@ TEST_CASE("A tube lost while it is carried stops the arm, and the round goes on"
   CHECK(world.arm.stopped == 1);
   CHECK(world.CountMotions(MotionKind::kLay) == 2);  // Of the second attempt.
   CHECK(round.outcome(1) == "placed");
-  CHECK_FALSE(world.cell.carrying);
+  CHECK_FALSE(world.cell.carried_opening_m);
 }
 
 TEST_CASE("A tube that is gone over the tray is noticed before anything is laid", "[unit]") {
@@ -317,7 +318,9 @@ TEST_CASE("Where fingers say that the tube is lost and the wrist still weighs it
   round.Run();
   CHECK(round.end() == "fault");
   CHECK(round.outcome(0) == "fault");
-  CHECK_THAT(round.report.reason, Catch::Contains("but the wrist still weighs one"));
+  CHECK_THAT(round.report.reason, Catch::Contains("wrist and gripper disagree: the wrist weighs "
+                                                  "0.5 N, the gripper says that it stands at "
+                                                  "0.0 mm and holds nothing"));
   CHECK(world.held() == 1);
 }
 

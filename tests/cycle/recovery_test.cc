@@ -1,5 +1,7 @@
 // Motions that are refused, devices that stop or fall silent, and who may say that it goes on.
 
+#include <algorithm>
+
 #include "tests/support/catch.h"
 #include "tests/support/fake_round.h"
 
@@ -271,6 +273,64 @@ TEST_CASE("A scanner that fails twice is a fault", "[unit]") {
   CHECK(round.outcome(0) == "fault");
   CHECK_THAT(round.report.reason, Catch::Contains("scan failed: told to fail"));
   CHECK(world.scanner.triggered == 2);
+}
+
+TEST_CASE("What an earlier program left in the fingers moves nowhere without a person's word",
+          "[unit]") {
+  // What is left shows in the fingers, or hangs on them so that only the wrist tells.
+  for (const bool in_fingers : {true, false}) {
+    for (const bool somebody : {false, true}) {
+      CAPTURE(in_fingers, somebody);
+      FakeWorld world(TwoTubes());
+      if (in_fingers) {
+        world.gripper.state.object = GripperObject::kContactClosing;
+        world.gripper.state.opening_m = 2 * world.part.radius_m;
+      } else {
+        world.wrist.lie = [&](WrenchSample& sample) {
+          sample.wrench_K.force_N *= 1.0 + 0.5 / sample.wrench_K.force_N.norm();
+        };
+      }
+      FakeRound round(world);
+      std::string asked;
+      if (somebody) {
+        round.setup.acknowledge = [&](const std::string& what) {
+          asked = what;
+          return Acknowledgement::kEnd;
+        };
+      }
+      round.Run();
+      CHECK(round.end() == "fault");
+      CHECK_THAT(round.report.reason, Catch::Contains(in_fingers ? "press on something of 25.0 mm"
+                                                                 : "the tool weighs") &&
+                                          Catch::Contains("left there by an earlier program"));
+      CHECK(asked.empty() == !somebody);
+      CHECK(world.log.empty());  // Nothing was commanded.
+    }
+  }
+}
+
+TEST_CASE("On a person's word what was left is put back into the bin, and the round begins",
+          "[unit]") {
+  FakeWorld world(TwoTubes());
+  world.gripper.state.object = GripperObject::kContactClosing;
+  world.gripper.state.opening_m = 2 * world.part.radius_m;
+  FakeRound round(world);
+  std::string asked;
+  round.setup.acknowledge = [&](const std::string& what) {
+    asked = what;
+    return Acknowledgement::kGoOn;
+  };
+  round.Run();
+  INFO(round.attempts_text());
+  CHECK_THAT(asked, Catch::Contains("It will be put back into the bin"));
+  CHECK(round.end() == "empty");
+  CHECK(world.Count(FakeTube::Place::kTray) == 2);
+  // The fingers opened low over the bin before anything was looked at.
+  const auto first_scan = std::find(world.log.begin(), world.log.end(), "scan");
+  const auto opened = std::find_if(world.log.begin(), world.log.end(), [](const std::string& line) {
+    return line.starts_with("fingers to 0.05");
+  });
+  CHECK(opened < first_scan);
 }
 
 }  // namespace

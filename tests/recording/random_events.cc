@@ -81,6 +81,7 @@ WrenchSample AnySample(RandomStream& stream) {
     sample.wrench_K.torque_Nm[i] = AnyNumber(stream, 10.0 / 13333.0);
   }
   sample.saturated = stream.Index(4) == 0;
+  if (stream.Index(4) == 0) sample.problem = AnyText(stream);
   return sample;
 }
 
@@ -134,6 +135,7 @@ class BitWriter {
     out_.F64(e.state.opening_m);
     out_.F64(e.state.requested_m);
     out_.I64(e.state.fault);
+    out_.Text(e.state.problem);
   }
   void operator()(const GripperCommanded& e) {
     Time(e.at);
@@ -146,6 +148,7 @@ class BitWriter {
     for (int i = 0; i < 3; ++i) out_.F64(e.sample.wrench_K.force_N[i]);
     for (int i = 0; i < 3; ++i) out_.F64(e.sample.wrench_K.torque_Nm[i]);
     out_.U8(e.sample.saturated);
+    out_.Text(e.sample.problem);
   }
   void operator()(const ScanTriggered& e) {
     Time(e.at);
@@ -250,6 +253,7 @@ CellEvent RandomEvent(RandomStream& stream) {
       state.opening_m = AnyNumber(stream, 0.1);
       state.requested_m = AnyNumber(stream, 0.1);
       state.fault = static_cast<int>(stream.Index(20)) - 5;
+      if (stream.Index(3) == 0) state.problem = AnyText(stream);
       return GripperRead{state};
     }
     case 8:

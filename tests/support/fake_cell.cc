@@ -7,8 +7,7 @@
 
 namespace tubetwin::test {
 
-FakeCell::FakeCell()
-    : cell{clock, arm, gripper, wrist, scanner, model, Bin(), SafetyLimits(), false} {
+FakeCell::FakeCell() : cell{clock, arm, gripper, wrist, scanner, model, Bin(), SafetyLimits()} {
   arm.q << 0, 0.3, 1.5, 0, -1.2, 0;
 }
 
@@ -39,6 +38,7 @@ ArmState FakeCell::FakeArm::State() const {
   state.planned_s = trajectory_.duration_s();
   state.done = done_;
   state.fault = fault;
+  if (lie) lie(state);
   return state;
 }
 
@@ -81,12 +81,15 @@ GripperState FakeCell::FakeGripper::State() const {
   if (!silent) newest_ = clock_.Now();
   GripperState now = state;
   now.time = newest_;
+  if (lie) lie(now);
   return now;
 }
 
 WrenchSample FakeCell::FakeWrist::Read() const {
   if (!silent) newest_ = clock_.Now();
-  return {newest_, weigh ? weigh() : load_K, saturated};
+  WrenchSample sample{newest_, weigh ? weigh() : load_K, saturated, {}};
+  if (lie) lie(sample);
+  return sample;
 }
 
 CommandResult FakeCell::FakeScanner::Trigger() {

@@ -39,6 +39,8 @@ class FakeCell {
     CommandResult Recover() override;
     std::function<void(const CheckedTrajectory&)> on_start;  ///< Called when a motion has begun.
 
+    std::function<void(ArmState&)> lie;  ///< What it says instead of the truth; may be empty.
+
     JointVector q = JointVector::Zero();       ///< Where it stands.
     JointVector offset = JointVector::Zero();  ///< Of what it reports while it moves.
     JointVector pushed = JointVector::Zero();  ///< Of what it reports at rest.
@@ -67,6 +69,7 @@ class FakeCell {
     void Command(const GripperCommand& command) override;
     GripperState State() const override;
     std::function<void(const GripperCommand&)> on_command;  ///< Called after `state` was set.
+    std::function<void(GripperState&)> lie;  ///< What it says instead of `state`; may be empty.
     GripperState state;
     bool silent = false;
     int commands = 0;
@@ -81,7 +84,8 @@ class FakeCell {
     explicit FakeWrist(const Clock& clock) : clock_(clock) {}
     WrenchSample Read() const override;
     Wrench load_K;
-    std::function<Wrench()> weigh;  ///< In place of load_K.
+    std::function<Wrench()> weigh;           ///< In place of load_K.
+    std::function<void(WrenchSample&)> lie;  ///< What it says instead; may be empty.
     bool silent = false, saturated = false;
 
    private:
