@@ -4,7 +4,9 @@
 
 #include "models/base/error.h"
 #include "models/base/files.h"
+#include "models/base/foreign/content.h"
 #include "models/base/json.h"
+#include "models/base/text.h"
 #include "scenes/pile.h"
 #include "scenes/pile_text.h"
 
@@ -68,7 +70,23 @@ Pile PileFromJson(const JsonView& document, const PileOverrides& overrides) {
   return pile;
 }
 
-Pile PileFromText(const std::vector<TextTube>& tubes, const PileOverrides& overrides) {
+/// Throws Error(kBadData) for coordinates that are millimetres if they are anything.
+void RefuseMillimetres(const std::vector<TextTube>& tubes, const std::string& path) {
+  double largest = 0.0;
+  for (const TextTube& tube : tubes) {
+    for (const Vector3& p : tube.centerline_N) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  }
+  constexpr double kSmallest_mm = 50.0, kLargest_mm = 3000.0;
+  if (!(largest >= kSmallest_mm && largest <= kLargest_mm)) return;
+  throw Error(ErrorKind::kBadData,
+              path + ": x y z: the largest is " + Number(largest) +
+                  ", allowed are -3 to 3 m of the bin's frame: is it in millimetres?\n"
+                  "(tubetwin pile import FILE --units mm --out F.json reads it so)");
+}
+
+Pile PileFromText(const std::vector<TextTube>& tubes, const PileOverrides& overrides,
+                  const std::string& path) {
+  if (!overrides.unit_m) RefuseMillimetres(tubes, path);
   Pile pile;
   pile.part = LoadPart(overrides.part.value_or(kDefaultPart));
   pile.bin.size_m = kDefaultBinSize_m;
@@ -84,29 +102,46 @@ Pile PileFromText(const std::vector<TextTube>& tubes, const PileOverrides& overr
   return pile;
 }
 
+/// Whether a first line names columns, or is a comment or Excel's "sep=" before such a line.
+bool LooksLikeCsv(std::string_view line) {
+  if (line[0] == '#' || line.starts_with("sep=")) return true;
+  const bool letters =
+      std::all_of(line.begin(), line.end(), [](unsigned char c) { return c >= 0x20 || c == '\t'; });
+  return letters && line.find_first_of(",;\t ") != std::string_view::npos;
+}
+
 }  // namespace
 
 Pile LoadPile(const std::string& path, const PileOverrides& overrides) {
   const std::string text = ReadFile(path);
-  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  std::size_t start = text.starts_with("\xef\xbb\xbf") ? 3 : 0;
+  start = text.find_first_not_of(" \t\r\n", start);
   if (start == std::string::npos) {
     throw Error(ErrorKind::kBadData, path + ": is empty; a pile is needed");
   }
+  const std::string_view first =
+      std::string_view(text).substr(start, text.find_first_of("\r\n", start) - start);
+  const std::string other = MistakenContent(std::string_view(text).substr(0, 64));
   Pile pile;
-  if (text[start] == '{' || text[start] == '[') {
+  if (first[0] == '{' || first[0] == '[') {
+    if (overrides.unit_m) {
+      throw Error(ErrorKind::kUsage,
+                  path + ": --units is for CSV and text; pile.json is in metres");
+    }
     const Json json = ReadJsonFile(path);
     pile = PileFromJson(JsonView(json, path), overrides);
-  } else if (std::isdigit(static_cast<unsigned char>(text[start]))) {
-    pile = PileFromText(ParsePileConfiguration(text, path), overrides);
-  } else if (text.compare(start, 4, "tube") == 0) {
-    pile = PileFromText(ParsePileCsv(text, path), overrides);
+  } else if (first.find_first_not_of("0123456789. \t") == std::string_view::npos) {
+    pile = PileFromText(ParsePileConfiguration(text, path, overrides.unit_m), overrides, path);
+  } else if ((other.empty() || other == "is a pile in CSV") && LooksLikeCsv(first)) {
+    pile = PileFromText(ParsePileCsv(text, path, overrides.unit_m), overrides, path);
   } else {
-    const unsigned char first = static_cast<unsigned char>(text[start]);
     throw Error(ErrorKind::kBadData,
-                path + ": byte " + std::to_string(start) + ": " +
-                    (std::isprint(first) ? "'" + std::string(1, text[start]) + "'" : "a byte") +
-                    " begins no pile; allowed: JSON (tubetwin/pile/1), CSV with the header "
-                    "tube,index,x,y,z, or the public set's tube_configurations text");
+                path + ": " +
+                    (other.empty() ? "byte " + std::to_string(start) + ": '" +
+                                         Printable(first.substr(0, 1)) + "' begins no pile"
+                                   : "no pile: it " + other) +
+                    "; allowed: JSON (tubetwin/pile/1), CSV with the header tube,index,x,y,z, or "
+                    "the public set's tube_configurations text");
   }
   if (overrides.bin_size_m) pile.bin.size_m = *overrides.bin_size_m;
   ValidatePile(pile, path);

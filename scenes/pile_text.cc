@@ -1,98 +1,35 @@
 #include "scenes/pile_text.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <string_view>
 
-#include "models/base/error.h"
+#include "scenes/text_lines.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr const char kHeader[] = "tube,index,x,y,z";
 constexpr int kMaxTubes = 1000, kMaxNodes = 10000;
 
-// Lines of a text with their numbers, for errors.
-class Lines {
- public:
-  Lines(const std::string& text, const std::string& source) : rest_(text), source_(source) {}
-
-  // Next line that is not blank; false at the end.
-  bool Next() {
-    while (!rest_.empty()) {
-      const std::size_t end = rest_.find('\n');
-      line_ = rest_.substr(0, end);
-      rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
-      ++number_;
-      while (!line_.empty() && std::isspace(static_cast<unsigned char>(line_.back()))) {
-        line_.remove_suffix(1);
-      }
-      if (!line_.empty()) return true;
-    }
-    return false;
+std::vector<std::string_view> SplitLine(const TextLines& lines, std::size_t count,
+                                        const std::string& what) {
+  std::vector<std::string_view> fields;
+  std::string_view rest = lines.line();
+  while (true) {
+    const std::size_t begin = rest.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) break;
+    rest = rest.substr(begin);
+    const std::size_t end = std::min(rest.find_first_of(" \t"), rest.size());
+    fields.push_back(rest.substr(0, end));
+    rest = rest.substr(end);
   }
-  void Need(const std::string& what) {
-    if (!Next()) {
-      throw Error(ErrorKind::kBadData, source_ + ": line " + std::to_string(number_) +
-                                           ": the file ends where " + what + " is needed");
-    }
+  if (fields.size() != count) {
+    lines.Fail("has " + std::to_string(fields.size()) +
+               " fields; allowed: " + std::to_string(count) + " (" + what + ")");
   }
-  std::string_view line() const { return line_; }
-
-  [[noreturn]] void Fail(const std::string& problem) const {
-    throw Error(ErrorKind::kBadData,
-                source_ + ": line " + std::to_string(number_) + ": " + problem);
-  }
-
-  std::vector<std::string_view> Split(const char* separators, std::size_t count,
-                                      const std::string& what) const {
-    std::vector<std::string_view> fields;
-    std::string_view rest = line_;
-    const bool blanks = separators[0] == ' ';
-    while (true) {
-      const std::size_t end = rest.find_first_of(separators);
-      const std::string_view field = rest.substr(0, end);
-      if (!(blanks && field.empty())) fields.push_back(field);
-      if (end == std::string_view::npos) break;
-      rest = rest.substr(end + 1);
-    }
-    if (fields.size() != count) {
-      Fail("has " + std::to_string(fields.size()) + " fields; allowed: " + std::to_string(count) +
-           " (" + what + ")");
-    }
-    return fields;
-  }
-
-  double AsNumber(std::string_view field, const char* name) const {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
-      Fail(std::string(name) + " is '" + std::string(field.substr(0, 40)) +
-           "'; allowed: a finite number");
-    }
-    return value;
-  }
-
-  int AsInteger(std::string_view field, const char* name, int low, int high) const {
-    int value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size() || value < low || value > high) {
-      Fail(std::string(name) + " is '" + std::string(field.substr(0, 40)) +
-           "'; allowed: a whole number from " + std::to_string(low) + " to " +
-           std::to_string(high));
-    }
-    return value;
-  }
-
- private:
-  std::string_view rest_;
-  std::string source_;
-  std::string_view line_;
-  int number_ = 0;
-};
+  return fields;
+}
 
 struct Node {
   Vector3 p_N;
@@ -102,9 +39,9 @@ struct Edge {
   int from, to, order;
 };
 
-Node ReadNode(Lines& lines, int& id) {
+Node ReadNode(TextLines& lines, int& id) {
   lines.Need("a node");
-  const auto fields = lines.Split(" \t", 5, "id x y z radius");
+  const auto fields = SplitLine(lines, 5, "id x y z radius");
   id = lines.AsInteger(fields[0], "node id", 0, std::numeric_limits<int>::max());
   Node node;
   const char* const names[] = {"x", "y", "z"};
@@ -115,9 +52,9 @@ Node ReadNode(Lines& lines, int& id) {
   return node;
 }
 
-Edge ReadEdge(Lines& lines, const std::map<int, Node>& nodes) {
+Edge ReadEdge(TextLines& lines, const std::map<int, Node>& nodes) {
   lines.Need("an edge");
-  const auto fields = lines.Split(" \t", 13, "name n1 n2 order radius cx cy cz qw qx qy qz length");
+  const auto fields = SplitLine(lines, 13, "name n1 n2 order radius cx cy cz qw qx qy qz length");
   Edge edge;
   const int max = std::numeric_limits<int>::max();
   edge.from = lines.AsInteger(fields[1], "n1", 0, max);
@@ -131,9 +68,9 @@ Edge ReadEdge(Lines& lines, const std::map<int, Node>& nodes) {
   return edge;
 }
 
-TextTube ReadTube(Lines& lines) {
+TextTube ReadTube(TextLines& lines) {
   lines.Need("a tube's `id nodes edges`");
-  const auto head = lines.Split(" \t", 3, "tube id, number of nodes, number of edges");
+  const auto head = SplitLine(lines, 3, "tube id, number of nodes, number of edges");
   TextTube tube;
   tube.id = lines.AsInteger(head[0], "tube id", 0, std::numeric_limits<int>::max());
   const int num_nodes = lines.AsInteger(head[1], "number of nodes", 2, kMaxNodes);
@@ -167,39 +104,18 @@ TextTube ReadTube(Lines& lines) {
 
 }  // namespace
 
-std::vector<TextTube> ParsePileCsv(const std::string& text, const std::string& source) {
-  Lines lines(text, source);
-  lines.Need(std::string("the header ") + kHeader);
-  if (lines.line() != kHeader) {
-    lines.Fail("header is '" + std::string(lines.line().substr(0, 60)) + "'; allowed: " + kHeader);
-  }
-  std::vector<TextTube> tubes;
-  while (lines.Next()) {
-    const auto fields = lines.Split(",", 5, kHeader);
-    const int id = lines.AsInteger(fields[0], "tube", 0, std::numeric_limits<int>::max());
-    if (tubes.empty() || tubes.back().id != id) {
-      const bool seen = std::any_of(tubes.begin(), tubes.end(),
-                                    [id](const TextTube& tube) { return tube.id == id; });
-      if (seen) lines.Fail("tube " + std::to_string(id) + " comes again after another tube");
-      if (tubes.size() >= kMaxTubes) lines.Fail("more than 1000 tubes");
-      tubes.push_back({id, {}, 0.0});
-    }
-    Polyline& line = tubes.back().centerline_N;
-    const int expected = static_cast<int>(line.size());
-    lines.AsInteger(fields[1], "index", expected, std::min(expected, kMaxNodes));
-    line.push_back({lines.AsNumber(fields[2], "x"), lines.AsNumber(fields[3], "y"),
-                    lines.AsNumber(fields[4], "z")});
-  }
-  return tubes;
-}
-
-std::vector<TextTube> ParsePileConfiguration(const std::string& text, const std::string& source) {
-  Lines lines(text, source);
+std::vector<TextTube> ParsePileConfiguration(const std::string& text, const std::string& source,
+                                             std::optional<double> unit_m) {
+  TextLines lines(text, source);
   lines.Need("the number of tubes");
-  const auto head = lines.Split(" \t", 1, "number of tubes");
+  const auto head = SplitLine(lines, 1, "number of tubes");
   const int count = lines.AsInteger(head[0], "number of tubes", 0, kMaxTubes);
   std::vector<TextTube> tubes;
-  for (int i = 0; i < count; ++i) tubes.push_back(ReadTube(lines));
+  for (int i = 0; i < count; ++i) {
+    tubes.push_back(ReadTube(lines));
+    for (Vector3& p : tubes.back().centerline_N) p *= unit_m.value_or(1.0);
+    tubes.back().radius_m *= unit_m.value_or(1.0);
+  }
   if (lines.Next()) lines.Fail("goes on after the last of " + std::to_string(count) + " tubes");
   return tubes;
 }

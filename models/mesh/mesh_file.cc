@@ -1,11 +1,6 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <map>
-#include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -14,8 +9,10 @@
 
 #include "models/base/error.h"
 #include "models/base/files.h"
+#include "models/base/foreign/content.h"
 #include "models/base/text.h"
 #include "models/mesh/mesh.h"
+#include "models/mesh/mesh_formats.h"
 
 /// What assimp calls when a file breaks an assumption of its readers: its own version ends the
 /// program, this one takes its place when the program is linked and lets the reader fail.
@@ -29,83 +26,8 @@ namespace Assimp {
 namespace tubetwin {
 namespace {
 
-constexpr std::size_t kMaxFaces = 2'000'000;
 /// Vertices closer than this share of the box's diagonal are one.
 constexpr double kWeld = 1e-5;
-
-[[noreturn]] void Refuse(const std::string& path, const std::string& why) {
-  throw Error(ErrorKind::kBadData, path + ": " + why);
-}
-
-std::string EndingOf(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
-}
-
-/// Bytes of a PLY type, or none.
-std::optional<std::uint64_t> BytesOf(const std::string& type) {
-  static const std::map<std::string, std::uint64_t> bytes = {
-      {"char", 1},  {"uchar", 1},  {"int8", 1},    {"uint8", 1},  {"short", 2}, {"ushort", 2},
-      {"int16", 2}, {"uint16", 2}, {"int", 4},     {"uint", 4},   {"int32", 4}, {"uint32", 4},
-      {"float", 4}, {"double", 8}, {"float32", 4}, {"float64", 8}};
-  const auto found = bytes.find(type);
-  return found == bytes.end() ? std::nullopt : std::optional(found->second);
-}
-
-/// What the header of a PLY file claims must be whole and fit into the file: the reader believes
-/// it, for memory and for where it ends.
-void CheckPlyHeader(const std::string& path, const std::string& content) {
-  std::istringstream head(content.substr(0, std::min<std::size_t>(content.size(), 1 << 16)));
-  std::string line;
-  std::uint64_t count = 0, needed = 0;
-  bool text = false;
-  for (int number = 1; std::getline(head, line); ++number) {
-    const auto refuse = [&] {
-      Refuse(path, "line " + std::to_string(number) + " is no line of a PLY header: '" +
-                       line.substr(0, 40) + "'");
-    };
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    std::istringstream words(line);
-    std::string word, kind, type, extra;
-    words >> word >> kind >> type;
-    if (number == 1 ? line != "ply" : word == "ply") refuse();
-    if (line == "end_header") {
-      const std::uint64_t held = content.size() - static_cast<std::uint64_t>(head.tellg());
-      if (needed <= held) return;
-      Refuse(path, "claims elements of at least " + std::to_string(needed) + " bytes, but holds " +
-                       std::to_string(held) + "; the file is cut off or no mesh");
-    }
-    if (word == "format") {
-      text = kind == "ascii";
-      if (!text && kind != "binary_little_endian" && kind != "binary_big_endian") refuse();
-    } else if (word == "element") {
-      const bool digits = std::all_of(type.begin(), type.end(),
-                                      [](unsigned char c) { return std::isdigit(c) != 0; });
-      if (type.empty() || !digits || type.size() > 12) refuse();
-      count = std::stoull(type);
-    } else if (word == "property") {
-      const auto bytes = BytesOf(kind == "list" ? type : kind);
-      if (!bytes || (kind == "list" && (!(words >> extra) || !BytesOf(extra)))) refuse();
-      // A list is at least its length, a word of text a digit and a blank.
-      needed += count * (text ? 2 : *bytes);
-    } else if (number > 1 && word != "comment" && word != "obj_info") {
-      refuse();
-    }
-  }
-  Refuse(path, "has no end_header line; it is no PLY file");
-}
-
-/// Refuses headers that claim what the file does not hold.
-void CheckHeader(const std::string& path, const std::string& ending, const std::string& content) {
-  if (ending == ".ply") CheckPlyHeader(path, content);
-  if (ending != ".stl" || content.rfind("solid", 0) == 0 || content.size() < 84) return;
-  std::uint32_t faces = 0;
-  std::memcpy(&faces, content.data() + 80, sizeof faces);
-  if (84 + 50 * std::uint64_t{faces} <= content.size()) return;
-  Refuse(path, "claims " + std::to_string(faces) + " triangles, but has only " +
-                   std::to_string(content.size()) + " bytes; the file is cut off or no mesh");
-}
 
 /// All triangles of a scene; the file's vertices as they are, each face with its own.
 Mesh Gather(const aiScene& scene, const std::string& path) {
@@ -115,30 +37,19 @@ Mesh Gather(const aiScene& scene, const std::string& path) {
     const std::size_t first = mesh.vertices.size();
     for (unsigned i = 0; i < part.mNumVertices; ++i) {
       const aiVector3D& v = part.mVertices[i];
-      mesh.vertices.push_back({v.x, v.y, v.z});
-      if (!mesh.vertices.back().allFinite()) {
-        Refuse(path, "vertex " + std::to_string(first + i) + " is (" + Number(v.x) + ", " +
-                         Number(v.y) + ", " + Number(v.z) + "); finite numbers are needed");
-      }
+      AddMeshVertex(path, {v.x, v.y, v.z}, mesh);
     }
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
+      std::vector<int> corners;
       for (unsigned k = 0; k < face.mNumIndices; ++k) {
         if (face.mIndices[k] >= part.mNumVertices) {
-          Refuse(path, "a face names vertex " + std::to_string(face.mIndices[k]) + " of " +
-                           std::to_string(part.mNumVertices));
+          RefuseMesh(path, "a face names vertex " + std::to_string(face.mIndices[k]) + " of " +
+                               std::to_string(part.mNumVertices));
         }
+        corners.push_back(static_cast<int>(first + face.mIndices[k]));
       }
-      // Polygons become fans; points and lines are nothing.
-      for (unsigned k = 2; k < face.mNumIndices; ++k) {
-        mesh.faces.push_back({static_cast<int>(first + face.mIndices[0]),
-                              static_cast<int>(first + face.mIndices[k - 1]),
-                              static_cast<int>(first + face.mIndices[k])});
-      }
-    }
-    if (mesh.faces.size() > kMaxFaces) {
-      Refuse(path, "more than " + std::to_string(kMaxFaces) +
-                       " triangles; export it with a coarser tolerance");
+      AddMeshPolygon(path, corners, mesh);
     }
   }
   return mesh;
@@ -183,36 +94,70 @@ Mesh Weld(const Mesh& mesh) {
   return out;
 }
 
-}  // namespace
-
-Mesh ReadMesh(const std::string& path) {
-  const std::string ending = EndingOf(path);
-  const std::string content = ReadFile(path);
-  if (ending != ".stl" && ending != ".obj" && ending != ".ply") {
-    Refuse(path, "the name ends in '" + ending + "'; meshes are read from .stl, .obj and .ply");
-  }
-  if (content.empty()) Refuse(path, "is empty");
-  CheckHeader(path, ending, content);
+/// Assimp's reader of OBJ.
+Mesh ReadObj(const std::string& path, const std::string& content) {
+  const std::string other = MistakenContent(std::string_view(content).substr(0, 64));
+  if (!other.empty()) RefuseMesh(path, "no OBJ mesh: it " + other);
   Assimp::Importer importer;
   const aiScene* scene = nullptr;
   try {
-    scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, ending.c_str() + 1);
+    scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, "obj");
   } catch (const std::exception& e) {
-    Refuse(path, std::string("cannot be read as a mesh: ") + e.what());
+    RefuseMesh(path, std::string("cannot be read as a mesh: ") + e.what());
   }
   if (scene == nullptr) {
     // It quotes the file, of any bytes and length.
-    std::string why = std::string(importer.GetErrorString()).substr(0, 120);
-    for (char& c : why) c = std::isprint(static_cast<unsigned char>(c)) != 0 ? c : ' ';
-    Refuse(path, "cannot be read as a mesh: " + (why.empty() ? "unknown content" : why));
+    const std::string why = Printable(std::string(importer.GetErrorString()).substr(0, 120));
+    RefuseMesh(path, "cannot be read as a mesh: " + (why.empty() ? "unknown content" : why));
   }
-  const Mesh raw = Gather(*scene, path);
+  return Gather(*scene, path);
+}
+
+}  // namespace
+
+void RefuseMesh(const std::string& path, const std::string& why) {
+  throw Error(ErrorKind::kBadData, path + ": " + why);
+}
+
+void AddMeshVertex(const std::string& path, const Vector3& p, Mesh& mesh) {
+  if (!p.allFinite()) {
+    RefuseMesh(path, "vertex " + std::to_string(mesh.vertices.size()) + " is (" + Number(p.x()) +
+                         ", " + Number(p.y()) + ", " + Number(p.z()) +
+                         "); finite numbers are needed");
+  }
+  mesh.vertices.push_back(p);
+}
+
+void AddMeshPolygon(const std::string& path, const std::vector<int>& corners, Mesh& mesh) {
+  // Points and lines are nothing.
+  for (std::size_t k = 2; k < corners.size(); ++k) {
+    mesh.faces.push_back({corners[0], corners[k - 1], corners[k]});
+  }
+  if (mesh.faces.size() > kMaxMeshFaces) {
+    RefuseMesh(path, "more than " + std::to_string(kMaxMeshFaces) +
+                         " triangles; export it with a coarser tolerance");
+  }
+}
+
+Mesh ReadMesh(const std::string& path) {
+  const std::string ending = LowerCase(std::filesystem::path(path).extension().string());
+  const std::string content = ReadFile(path);
+  if (ending != ".stl" && ending != ".obj" && ending != ".ply") {
+    const std::string other = MistakenContent(std::string_view(content).substr(0, 64));
+    RefuseMesh(path, "the name ends in '" + Printable(ending) +
+                         "'; meshes are read from .stl, .obj and .ply" +
+                         (other.empty() ? "" : " (the file " + other + ")"));
+  }
+  if (content.empty()) RefuseMesh(path, "is empty");
+  const Mesh raw = ending == ".stl"   ? ReadStl(path, content)
+                   : ending == ".ply" ? ReadPlyMesh(path)
+                                      : ReadObj(path, content);
   if (raw.faces.empty()) {
-    Refuse(path, "holds no triangle (" + std::to_string(raw.vertices.size()) +
-                     " vertices); a surface is needed");
+    RefuseMesh(path, "holds no triangle (" + std::to_string(raw.vertices.size()) +
+                         " vertices); a surface is needed");
   }
   Mesh mesh = Weld(raw);
-  if (mesh.faces.empty()) Refuse(path, "all its triangles are points or lines");
+  if (mesh.faces.empty()) RefuseMesh(path, "all its triangles are points or lines");
   return mesh;
 }
 

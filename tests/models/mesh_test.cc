@@ -64,14 +64,15 @@ TEST_CASE("A file that is no mesh is refused with the reason", "[unit]") {
   CheckRefused([&] { ReadMesh(folder / "none.stl"); }, ErrorKind::kMissing, "no such file");
   refused("a.step", "ISO-10303-21;", ".stl, .obj and .ply");
   refused("empty.stl", "", "is empty");
-  refused("noise.ply", "no mesh at all", "line 1 is no line of a PLY header");
+  refused("noise.ply", "no mesh at all\n", "the first line is not 'ply': no PLY file");
   refused("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "holds no triangle");
-  refused("endless.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "no end_header");
+  refused("endless.ply", "ply\nformat ascii 1.0\nelement vertex 3\n",
+          "the file ends inside its header");
   refused("words.obj", "this is no mesh\n", "words.obj");
   refused("cut.stl", BinaryStl(kTube).substr(0, 300), "but has only 300 bytes");
   std::string huge = TextPly(kTube);
   huge.replace(huge.find("element vertex "), 17, "element vertex 4000000000");
-  refused("huge.ply", huge, "claims elements of at least");
+  refused("huge.ply", huge, "count of element 'vertex' is 4000000000");
   Mesh broken = kTube;
   broken.vertices[5].y() = std::numeric_limits<double>::quiet_NaN();
   refused("nan.stl", BinaryStl(broken), "finite numbers are needed");

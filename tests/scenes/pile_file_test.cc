@@ -130,6 +130,30 @@ TEST_CASE("The public set's own file is read where the data is", "[unit]") {
   CHECK(pile.tubes[0].centerline_N.back() == Vector3(-0.126595, 0.10497, 0.0359598));
 }
 
+TEST_CASE("A CSV in millimetres is read so when that is said, else refused by that name",
+          "[unit]") {
+  const Folder folder("millimetres");
+  const std::string csv =
+      folder.Write("p.csv", "tube,index,x,y,z\n1,0,-163.4,31.4,12.5\n1,1,49.07,-23.95,12.5\n");
+  CHECK_THAT(MessageOf([&] { LoadPile(csv); }, ErrorKind::kBadData),
+             Catch::Contains("the largest is 163.4") && Catch::Contains("--units mm"));
+  PileOverrides overrides;
+  overrides.unit_m = 0.001;
+  const Pile pile = LoadPile(csv, overrides);
+  CHECK(pile.tubes[0].centerline_N[0].isApprox(Vector3(-0.1634, 0.0314, 0.0125)));
+  const std::string text = folder.Write("p.txt",
+                                        "\xef\xbb\xbf"
+                                        "1\n9 2 1\n1 0 200 10 11\n2 +100 250 10 11\n"
+                                        "e_1_2 1 2 1 11 0 0 0 1 0 0 0 112\n");
+  CHECK_THAT(MessageOf([&] { LoadPile(text); }, ErrorKind::kBadData),
+             Catch::Contains("--units mm"));
+  const PileTube tube = LoadPile(text, overrides).tubes[0];
+  CHECK(tube.centerline_N[1].isApprox(Vector3(0.1, 0.25, 0.01)));
+  CHECK(tube.radius_m == Approx(0.011));
+  SavePile(TwoTubes(), folder.Path("a.json"));
+  MessageOf([&] { LoadPile(folder.Path("a.json"), overrides); }, ErrorKind::kUsage);
+}
+
 struct Case {
   std::string text;
   std::vector<std::string> says;
@@ -142,15 +166,22 @@ std::vector<Case> BadFiles() {
       "\"part\": \"pvc_a\", \"tubes\": ";
   return {
       {"", {"is empty"}},
-      {"\x89PNG\r\n", {"byte 0", "begins no pile"}},
-      {"x,y,z\n", {"byte 0: 'x'", "tube,index,x,y,z"}},
-      {"tubes,index,x,y,z\n", {"line 1", "'tubes,index,x,y,z'"}},
+      {"\x89PNG\r\n", {"no pile: it is a PNG picture"}},
+      {"\x01\x02\n", {"byte 0: '\\x01' begins no pile"}},
+      {"x,y,z\n", {"line 1", "header is 'x,y,z' and lacks 'tube'", "tube,index,x,y,z"}},
+      {"tubes,index,x,y,z\n", {"line 1", "'tubes,index,x,y,z' and lacks 'tube'"}},
+      {"pile\n", {"byte 0: 'p' begins no pile"}},
+      {"\x1f\x8b\x08", {"is packed by gzip"}},
+      {"# .PCD v.7\nVERSION .7\n", {"no pile: it is a PCD cloud"}},
+      {"solid tube\nfacet", {"no pile: it is an STL mesh"}},
       {csv, {"has 0 tubes", "1 to 200"}},
       {csv + "1,0,0,0,0.1\n1,1,nan,0,0.1\n", {"line 3", "x is 'nan'", "finite"}},
       {csv + "1,0,0,0,inf\n", {"line 2", "z is 'inf'"}},
-      {csv + "1,0,0,0,0.1\n1,1,0.1,0\n", {"line 3", "has 4 fields; allowed: 5"}},
-      {csv + "1,0,0,0,0.1\n1,2,0.1,0,0.1\n", {"line 3", "index is '2'", "1 to 1"}},
-      {csv + "1,0,0,0,0.1\n1,1,0.1,0,0.1\n2,0,0,0,0\n1,2,0,0,0\n", {"line 5", "comes again"}},
+      {csv + "1,0,0,0,0.1\n1,1,0.1,0\n", {"line 3", "has 4 fields; the header has 5"}},
+      {csv + "1,0,0,0,0.1\n1,2,0.1,0,0.1\n",
+       {"line 3", "index of tube 1 is 2, and it has no 1", "each from 0 on once"}},
+      {csv + "1,0,0,0,0.1\n1,1,0.1,0,0.1\n2,0,0,0,0\n1,1,0,0,0\n",
+       {"line 5", "index of tube 1 is 1, which it had before"}},
       {csv + "one,0,0,0,0.1\n", {"line 2", "tube is 'one'"}},
       {csv + "1,0,0,0,0.1\n", {"tubes[0] (id 1)", "has 1 nodes", "2 to 2000"}},
       {csv + "1,0,0,0,0.1\n1,1,0,0,0.1\n", {"centerline_m[1]", "at least 0.001"}},

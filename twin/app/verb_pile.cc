@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "models/base/error.h"
+#include "models/base/foreign/length_unit.h"
 #include "models/base/json.h"
 #include "models/base/text.h"
 #include "planner/cell_check/cell_check.h"
@@ -14,7 +15,7 @@ namespace tubetwin {
 namespace {
 
 struct PileOptions {
-  std::string file, part = "pvc_a", bin, arrangement = "dropped";
+  std::string file, part = "pvc_a", bin, units, arrangement = "dropped";
   int count = 7;
 };
 
@@ -22,6 +23,7 @@ PileOverrides Overrides(const PileOptions& options, bool part_given) {
   PileOverrides out;
   if (part_given) out.part = options.part;
   if (!options.bin.empty()) out.bin_size_m = ParseBinSize(options.bin);
+  out.unit_m = MetresPer(options.units);
   return out;
 }
 
@@ -86,6 +88,17 @@ int Show(const PileOptions& options, bool part_given, const Common& common) {
   return 0;
 }
 
+/// The options of verbs that read a pile; returns --part.
+CLI::Option* AddReadOptions(CLI::App& verb, PileOptions& options) {
+  verb.add_option("file", options.file, "pile.json, CSV or the public set's text")->required();
+  CLI::Option* part = verb.add_option("--part", options.part, "Part name or part file");
+  verb.add_option("--bin", options.bin, "Inner size of the bin: long,short,wall in metres");
+  verb.add_option("--units", options.units,
+                  "Unit of CSV and text; default: what the header says, else metres")
+      ->check(CLI::IsMember(LengthUnits()));
+  return part;
+}
+
 }  // namespace
 
 void AddPileVerb(CLI::App& app, Common& common) {
@@ -112,9 +125,7 @@ void AddPileVerb(CLI::App& app, Common& common) {
   auto read = std::make_shared<PileOptions>();
   CLI::App* import = pile->add_subcommand(
       "import", "Example: tubetwin pile import A5_2.csv --bin 0.80,0.60,0.09 --out p.json");
-  import->add_option("file", read->file, "pile.json, CSV or the public set's text")->required();
-  CLI::Option* import_part = import->add_option("--part", read->part, "Part name or part file");
-  import->add_option("--bin", read->bin, "Inner size of the bin: long,short,wall in metres");
+  CLI::Option* import_part = AddReadOptions(*import, *read);
   AddCommonOptions(*import, common, "Pile file to write (pile.json)", true);
   import->callback([read, import_part, &common] {
     common.action = [read, import_part, &common] {
@@ -129,9 +140,7 @@ CLI::App* show = pile->add_subcommand(
     "show",
     "Example: tubetwin pile show p.json --out p.png\n\nPrints the tubes with their classes "
     "by truth; with --out also draws them.");
-show->add_option("file", shown->file, "pile.json, CSV or the public set's text")->required();
-CLI::Option* show_part = show->add_option("--part", shown->part, "Part name or part file");
-show->add_option("--bin", shown->bin, "Inner size of the bin: long,short,wall in metres");
+CLI::Option* show_part = AddReadOptions(*show, *shown);
 AddCommonOptions(*show, common, "Picture to write (PNG)", false);
 show->callback([shown, show_part, &common] {
   common.action = [shown, show_part, &common] {

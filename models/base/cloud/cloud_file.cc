@@ -54,7 +54,7 @@ CloudFile::CloudFile(const std::string& path, const std::string& kind) : path_(p
       throw Error(ErrorKind::kMissing, path + ": cannot be read: " + std::strerror(errno));
     }
   }
-  if (size_ == 0) throw Error(ErrorKind::kBadData, path + ": is empty; a cloud is needed");
+  if (size_ == 0) throw Error(ErrorKind::kBadData, path + ": is empty");
   std::string head(std::min<std::uint64_t>(size_, 64), '\0');
   in_->read(head.data(), static_cast<std::streamsize>(head.size()));
   const std::string other = MistakenContent(head);
