@@ -19,14 +19,20 @@ enum class Division : std::uint8_t { kRobot = 1, kFile = 2 };
 
 // Commands of the robot control division.
 inline constexpr std::uint16_t kAlarm = 0x70, kAlarmHistory = 0x71, kStatus = 0x72,
-                               kExecutingJob = 0x73, kPosition = 0x75, kIoByte = 0x78,
+                               kExecutingJob = 0x73, kAxisNames = 0x74, kPosition = 0x75,
+                               kPositionError = 0x76, kTorque = 0x77, kIoByte = 0x78,
                                kRegister = 0x79, kVariableB = 0x7A, kVariableI = 0x7B,
                                kVariableD = 0x7C, kVariableR = 0x7D, kVariableS = 0x7E,
-                               kReset = 0x82, kPower = 0x83, kCycle = 0x84, kStartJob = 0x86,
-                               kSelectJob = 0x87, kMoveCartesian = 0x8A, kMovePulse = 0x8B;
+                               kVariableP = 0x7F, kVariableBp = 0x80, kVariableEx = 0x81,
+                               kReset = 0x82, kPower = 0x83, kCycle = 0x84, kPendantText = 0x85,
+                               kStartJob = 0x86, kSelectJob = 0x87, kManagementTime = 0x88,
+                               kSystemInfo = 0x89, kMoveCartesian = 0x8A, kMovePulse = 0x8B;
+/// Several of kIoByte, kRegister, kVariableB to kVariableEx at once: kPluralIo + n.
+inline constexpr std::uint16_t kPluralIo = 0x300, kPluralEx = 0x309;
 
 // Services.
-inline constexpr std::uint8_t kGetAll = 0x01, kSetAll = 0x02, kGetOne = 0x0E, kSetOne = 0x10;
+inline constexpr std::uint8_t kGetAll = 0x01, kSetAll = 0x02, kGetOne = 0x0E, kSetOne = 0x10,
+                              kReadPlural = 0x33, kWritePlural = 0x34;
 
 // Instances: of kPosition, of kReset, of kPower, of moves.
 inline constexpr std::uint16_t kPulses = 1, kCartesian = 101;

@@ -1,5 +1,6 @@
 #include "hw_bridge/codecs/simple_message.h"
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -37,14 +38,24 @@ void Visit(auto& v, ReadRegister& b) { v(b.address); }
 void Visit(auto& v, ReadRegisterReply& b) { v(b.value, b.result); }
 void Visit(auto& v, WriteRegister& b) { v(b.address, b.value); }
 void Visit(auto& v, WriteRegisterReply& b) { v(b.result); }
+void Visit(auto& v, JointPointEx& b) { v(b.groups, b.sequence, b.points); }
+void Visit(auto&, GetDhParameters&) {}
+void Visit(auto& v, DhParameters& b) { v(b.values); }
 
 struct Writer {
   std::string& out;
 
   void One(std::int32_t value) { PutLe32(out, static_cast<std::uint32_t>(value)); }
   void One(float value) { PutLeFloat(out, value); }
-  void One(const Slots& values) {
-    for (const float value : values) One(value);
+  template <typename T, std::size_t N>
+  void One(const std::array<T, N>& values) {
+    for (const T& value : values) One(value);
+  }
+  void One(const GroupPoint& point) {
+    One(point.group);
+    One(point.valid_fields);
+    One(point.time_s);
+    for (const Slots* slots : {&point.q_rad, &point.qd_rad_s, &point.qdd_rad_s2}) One(*slots);
   }
   template <typename Enum>
   requires std::is_enum_v<Enum>
@@ -62,8 +73,15 @@ struct Reader {
   std::size_t Step() { return std::exchange(at, at + 4); }
   void One(std::int32_t& value) { value = LeInt32At(bytes, Step()); }
   void One(float& value) { value = LeFloatAt(bytes, Step()); }
-  void One(Slots& values) {
-    for (float& value : values) One(value);
+  template <typename T, std::size_t N>
+  void One(std::array<T, N>& values) {
+    for (T& value : values) One(value);
+  }
+  void One(GroupPoint& point) {
+    One(point.group);
+    One(point.valid_fields);
+    One(point.time_s);
+    for (Slots* slots : {&point.q_rad, &point.qd_rad_s, &point.qdd_rad_s2}) One(*slots);
   }
   template <typename Enum>
   requires std::is_enum_v<Enum>
@@ -109,6 +127,9 @@ const std::array<Kind, std::variant_size_v<Body>>& Kinds() {
       {2012, Comm::kReply, Comm::kReply, ReadRegisterReply{}},
       {2013, Comm::kRequest, Comm::kRequest, WriteRegister{}},
       {2013, Comm::kReply, Comm::kReply, WriteRegisterReply{}},
+      {2016, Comm::kRequest, Comm::kRequest, JointPointEx{}},
+      {2020, Comm::kRequest, Comm::kRequest, GetDhParameters{}},
+      {2020, Comm::kReply, Comm::kReply, DhParameters{}},
   }};
   return kinds;
 }
@@ -199,6 +220,53 @@ std::variant<Message, NoMessage> DecodeFront(std::string_view bytes, bool use_le
   Reader reader{bytes, kHeadSize};
   std::visit([&reader](auto& body) { Visit(reader, body); }, message.body);
   return message;
+}
+
+namespace {
+
+constexpr std::int32_t kPointExId = 2016;
+constexpr std::size_t kGroupPointSize = 132;
+
+/// Of the groups that it says to have; nothing for what no controller can hold.
+std::optional<std::size_t> PointExSize(std::string_view bytes) {
+  constexpr std::size_t kCounts = 8;
+  if (bytes.size() < kHeadSize + 4) return kLargestMessage;
+  const std::int32_t groups = LeInt32At(bytes, kHeadSize);
+  if (groups > kGroups) return std::nullopt;
+  return kHeadSize + kCounts + kGroupPointSize * static_cast<std::size_t>(std::max(0, groups));
+}
+
+const Kind* FindRequest(std::int32_t id) {
+  for (const Kind& kind : Kinds()) {
+    if (kind.id == id) return &kind;  // Requests come first.
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::variant<FrontRequest, NoMessage> DecodeRequestFront(std::string_view bytes) {
+  const std::int32_t id = bytes.size() >= 8 ? LeInt32At(bytes, 4) : 0;
+  const auto incomplete = [&] {
+    return NoMessage{NoMessage::Kind::kIncomplete, id,
+                     std::to_string(bytes.size()) + " bytes of message id " + std::to_string(id)};
+  };
+  if (bytes.size() < kHeadSize) return incomplete();
+  const Kind* const kind = FindRequest(id);
+  if (kind == nullptr) {
+    return NoMessage{NoMessage::Kind::kUnknownId, id, "message id " + std::to_string(id)};
+  }
+  const std::optional<std::size_t> size =
+      id == kPointExId ? PointExSize(bytes) : std::optional(SizeOf(*kind));
+  if (!size || bytes.size() < *size) return incomplete();
+  std::string whole(bytes.substr(0, *size));
+  whole.resize(std::max(whole.size(), SizeOf(*kind)), '\0');
+  FrontRequest front{{static_cast<Comm>(LeInt32At(bytes, 8)),
+                      static_cast<ReplyCode>(LeInt32At(bytes, 12)), kind->empty},
+                     *size};
+  Reader reader{whole, kHeadSize};
+  std::visit([&reader](auto& body) { Visit(reader, body); }, front.message.body);
+  return front;
 }
 
 void StreamReader::Append(std::string_view bytes) {

@@ -54,6 +54,35 @@ struct JointPoint {
   bool operator==(const JointPoint&) const = default;
 };
 
+/// One group's part of a point for several of them.
+struct GroupPoint {
+  std::int32_t group = 0;
+  std::int32_t valid_fields = kTime | kPosition | kVelocity;
+  float time_s = 0;
+  Slots q_rad{}, qd_rad_s{}, qdd_rad_s2{};
+  bool operator==(const GroupPoint&) const = default;
+};
+inline constexpr int kGroups = 4;
+
+/// A point of up to four groups. Clients may leave out the groups that are not there.
+struct JointPointEx {
+  std::int32_t groups = 1;
+  std::int32_t sequence = 0;
+  std::array<GroupPoint, kGroups> points{};
+  bool operator==(const JointPointEx&) const = default;
+};
+
+/// Asks for the arm's geometry.
+struct GetDhParameters {
+  bool operator==(const GetDhParameters&) const = default;
+};
+/// Theta, d, a, alpha of 8 links of each of four groups.
+struct DhParameters {
+  static constexpr int kLinks = 8, kNumbers = 4;
+  std::array<float, kGroups * kLinks * kNumbers> values{};
+  bool operator==(const DhParameters&) const = default;
+};
+
 /// Pushed on the state port.
 struct JointFeedback {
   std::int32_t group = 0;
@@ -154,7 +183,8 @@ struct SelectTool {
 
 // I/O port. Results: 0, 1001 read address, 1002 write address, 1003 write value, 1004 and 1005 the
 // controller's own failures. Bit addresses end in 0 to 7; a group's address is a bit's / 10.
-inline constexpr std::int32_t kIoReadAddress = 1001, kIoWriteAddress = 1002, kIoWriteValue = 1003;
+inline constexpr std::int32_t kIoReadAddress = 1001, kIoWriteAddress = 1002, kIoWriteValue = 1003,
+                              kIoReadFailure = 1004, kIoWriteFailure = 1005;
 
 struct ReadBit {
   std::int32_t address = 0;
@@ -188,7 +218,7 @@ struct WriteGroupReply {
   std::int32_t result = 0;
   bool operator==(const WriteGroupReply&) const = default;
 };
-struct ReadRegister {  ///< M registers 1000000 to 1000999.
+struct ReadRegister {  ///< M registers 0 to 999, or 1000000 to 1000999.
   std::int32_t address = 0;
   bool operator==(const ReadRegister&) const = default;
 };
@@ -205,10 +235,11 @@ struct WriteRegisterReply {
   bool operator==(const WriteRegisterReply&) const = default;
 };
 
-using Body = std::variant<Ping, RobotStatus, JointPoint, JointFeedback, MotionControl, MotionReply,
-                          SelectTool, ReadBit, ReadBitReply, WriteBit, WriteBitReply, ReadGroup,
-                          ReadGroupReply, WriteGroup, WriteGroupReply, ReadRegister,
-                          ReadRegisterReply, WriteRegister, WriteRegisterReply>;
+using Body =
+    std::variant<Ping, RobotStatus, JointPoint, JointFeedback, MotionControl, MotionReply,
+                 SelectTool, ReadBit, ReadBitReply, WriteBit, WriteBitReply, ReadGroup,
+                 ReadGroupReply, WriteGroup, WriteGroupReply, ReadRegister, ReadRegisterReply,
+                 WriteRegister, WriteRegisterReply, JointPointEx, GetDhParameters, DhParameters>;
 
 struct Message {
   Comm comm = Comm::kRequest;
@@ -226,7 +257,7 @@ std::string Encode(const Message& message);
 /// Length and header together: what a receiver needs to know a message's size.
 inline constexpr std::size_t kHeadSize = 16;
 /// Of any message that is known.
-inline constexpr std::size_t kLargestMessage = 152;
+inline constexpr std::size_t kLargestMessage = 552;
 
 /// Size in bytes, length included, of a message of that id; registers have one id for request and
 /// reply. Nothing when the id is unknown.
@@ -245,8 +276,18 @@ struct NoMessage {
 };
 
 /// The message that `bytes` begin with; its size is MessageSize. Whatever the bytes are: never
-/// throws. `use_length` false, as the controller does: the length before it is not looked at.
+/// throws. `use_length` false: the length before it is not looked at.
 std::variant<Message, NoMessage> DecodeFront(std::string_view bytes, bool use_length);
+
+/// A request and how many bytes it has.
+struct FrontRequest {
+  Message message;
+  std::size_t size = 0;
+};
+/// The request that `bytes` begin with, as a controller reads it: by its id alone. Neither the
+/// length before it nor comm type and reply code are looked at; a JointPointEx has as many groups
+/// as it says. Whatever the bytes are: never throws.
+std::variant<FrontRequest, NoMessage> DecodeRequestFront(std::string_view bytes);
 
 /// A client's side of a TCP stream: bytes come in any pieces, messages go out. After an error the
 /// stream has lost its place and yields nothing more.

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "hw_bridge/emulators/corrupt.h"
 #include "models/base/error.h"
@@ -16,6 +17,11 @@ using asio::ip::tcp;
 
 constexpr std::size_t kReceive = 4096;
 constexpr std::size_t kMaxUnsent = 64 * 1024;
+// Of each period.
+constexpr int kMaxAccepts = 32, kMaxReceives = 16;
+constexpr TimeNs kStuck = std::chrono::seconds(2);
+/// Of the kernel: so that what a client does not read is noticed here.
+constexpr int kSendBuffer = 16 * 1024;
 
 struct Connection {
   explicit Connection(tcp::socket s) : socket(std::move(s)) {}
@@ -23,6 +29,8 @@ struct Connection {
   std::array<char, kReceive> receive{};
   std::string held;  ///< Received while frozen or paused; nothing more is read then.
   bool reading = false, paused = false, writing = false, closing = false;
+  int receives = 0;  ///< Of this period.
+  TimeNs wrote{0};   ///< When the newest write was begun.
   std::deque<std::string> unsent;
   std::size_t unsent_bytes = 0;
   std::deque<std::pair<TimeNs, std::string>> delayed;
@@ -43,6 +51,8 @@ struct TcpServer::Impl : std::enable_shared_from_this<Impl> {
   void Drop(Client id);
   void Send(Client id, const std::string& message);
   void Tick(TimeNs now);
+  /// What one period allows is over: the next one begins.
+  void Refresh();
 
   Connection* Find(Client id) {
     const auto found = connections.find(id);
@@ -56,6 +66,8 @@ struct TcpServer::Impl : std::enable_shared_from_this<Impl> {
   std::map<Client, std::unique_ptr<Connection>> connections;
   Client next = 1;
   TimeNs now{0};
+  bool accepting = true;
+  int accepts = 0;  ///< Of this period.
 };
 
 void TcpServer::Impl::Accept() {
@@ -64,7 +76,9 @@ void TcpServer::Impl::Accept() {
         const auto self = weak.lock();
         if (!self || error == asio::error::operation_aborted) return;
         if (!error) self->Admit(std::move(socket));
-        self->Accept();
+        // An error (no more descriptors) would come again at once.
+        self->accepting = !error && ++self->accepts < kMaxAccepts;
+        if (self->accepting) self->Accept();
       });
 }
 
@@ -80,6 +94,7 @@ void TcpServer::Impl::Admit(tcp::socket socket) {
   }
   asio::error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
+  socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
   const Client id = next++;
   connections.emplace(id, std::make_unique<Connection>(std::move(socket)));
   if (callbacks.joined) callbacks.joined(id);
@@ -89,6 +104,8 @@ void TcpServer::Impl::Admit(tcp::socket socket) {
 void TcpServer::Impl::Read(Client id) {
   Connection* const c = Find(id);
   if (c == nullptr || c->reading || c->paused || c->closing || !c->held.empty()) return;
+  if (c->receives >= kMaxReceives) return;  // Until the next period.
+  ++c->receives;
   c->reading = true;
   c->socket.async_read_some(
       asio::buffer(c->receive),
@@ -134,6 +151,7 @@ void TcpServer::Impl::Write(Client id) {
     return;
   }
   c->writing = true;
+  c->wrote = now;
   asio::async_write(c->socket, asio::buffer(c->unsent.front()),
                     [weak = weak_from_this(), id](const asio::error_code& error, std::size_t) {
                       const auto self = weak.lock();
@@ -177,8 +195,24 @@ void TcpServer::Impl::Send(Client id, const std::string& message) {
   }
 }
 
+void TcpServer::Impl::Refresh() {
+  std::vector<Client> ids, stuck;
+  for (const auto& [id, connection] : connections) {
+    ids.push_back(id);
+    if (connection->writing && now - connection->wrote > kStuck) stuck.push_back(id);
+  }
+  for (const Client id : stuck) Drop(id);
+  for (const Client id : ids) {
+    if (Connection* const c = Find(id)) c->receives = 0;
+    Read(id);
+  }
+}
+
 void TcpServer::Impl::Tick(TimeNs t) {
   now = t;
+  accepts = 0;
+  if (!std::exchange(accepting, true)) Accept();
+  Refresh();
   if (faults.freeze) return;
   for (auto it = connections.begin(); it != connections.end();) {
     const Client id = (it++)->first;
@@ -256,6 +290,8 @@ void TcpServer::Close(Client client) {
   c->closing = true;
   impl_->Write(client);
 }
+
+void TcpServer::Cut(Client client) { impl_->Drop(client); }
 
 void TcpServer::CloseAll() {
   while (!impl_->connections.empty()) impl_->Drop(impl_->connections.begin()->first);

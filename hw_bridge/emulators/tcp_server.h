@@ -16,8 +16,9 @@ class io_context;
 namespace tubetwin {
 
 /// One listening TCP port of an emulated controller and its clients, with the link's faults.
-/// Everything happens on the thread that runs the io_context. Buffers are bounded: a client that
-/// does not read is closed.
+/// Everything happens on the thread that runs the io_context. Buffers are bounded, and so is what
+/// is accepted and received each period: no client can keep the others waiting. One that has not
+/// read what was sent to it for 2 s is closed.
 class TcpServer {
  public:
   using Client = std::uint64_t;
@@ -47,6 +48,8 @@ class TcpServer {
   void Pause(Client client, bool pause);
   /// After what was sent so far. `left` is called.
   void Close(Client client);
+  /// At once. `left` is called.
+  void Cut(Client client);
   void CloseAll();
 
   /// After every control period: what was delayed and is due goes out, what a freeze held back

@@ -12,6 +12,10 @@ namespace tubetwin {
 
 using asio::ip::udp;
 
+namespace {
+constexpr int kMaxReceives = 64;  ///< Each period: a flood must not keep the others waiting.
+}
+
 struct UdpServer::Impl : std::enable_shared_from_this<Impl> {
   Impl(asio::io_context& io, Answer a) : socket(io), answer(std::move(a)) {}
 
@@ -33,6 +37,8 @@ struct UdpServer::Impl : std::enable_shared_from_this<Impl> {
   udp::endpoint sender;
   std::deque<Delayed> delayed;
   TimeNs now{0};
+  bool receiving = true;
+  int receives = 0;  ///< Of this period.
 };
 
 void UdpServer::Impl::Receive() {
@@ -43,7 +49,8 @@ void UdpServer::Impl::Receive() {
         if (!self || error == asio::error::operation_aborted) return;
         // Errors are those of earlier answers to closed ports.
         if (!error) self->Received(size);
-        self->Receive();
+        self->receiving = ++self->receives < kMaxReceives;
+        if (self->receiving) self->Receive();
       });
 }
 
@@ -98,6 +105,8 @@ int UdpServer::port() const { return impl_->socket.local_endpoint().port(); }
 
 void UdpServer::Tick(TimeNs now) {
   impl_->now = now;
+  impl_->receives = 0;
+  if (!std::exchange(impl_->receiving, true)) impl_->Receive();
   while (!impl_->delayed.empty() && impl_->delayed.front().due <= now) {
     impl_->Put(impl_->delayed.front().bytes, impl_->delayed.front().to);
     impl_->delayed.pop_front();

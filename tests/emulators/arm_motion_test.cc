@@ -143,7 +143,8 @@ TEST_CASE("what is no message gets the controller's own answers and the socket s
   std::string length = ready;
   length[0] = 1;
   CHECK(answer(length).sequence == 7);
-  CHECK(answer(sm::Encode(sm::Request(sm::ReadBit{10010}))).subcode == Code(Invalid::kMessageType));
+  CHECK(answer(sm::Encode(sm::Request(sm::ReadRegister{7}))).subcode ==
+        Code(Invalid::kMessageType));
   // It has no answer of its own to an unknown command: the one before is sent again.
   CHECK(answer(sm::Encode(sm::Request(sm::MotionControl{0, 0, sm::Command(200999), {}}))).subcode ==
         Code(Invalid::kMessageType));

@@ -1,5 +1,8 @@
 // The emulated controller's state, I/O and supervision ports, and what can befall its links.
 
+#include <atomic>
+#include <thread>
+
 #include "models/base/error.h"
 #include "models/base/random.h"
 #include "tests/codecs/hex.h"
@@ -38,9 +41,11 @@ TEST_CASE("the state port pushes position and status every 25 ms to four clients
   JointVector q;
   q << 0.1, -0.2, 1.5, 0, 0.25, 0;
   rig.arm.Place(q);
-  ArmRig::Socket a = rig.State(), b = rig.State(), c = rig.State(), d = rig.State();
-  ArmRig::Socket e = rig.State();
-  CHECK(e.closed());
+  ArmRig::Socket first = rig.State();
+  ArmRig::Socket b = rig.State(), c = rig.State(), d = rig.State();
+  // A fifth one gets the first one's place.
+  ArmRig::Socket a = rig.State();
+  CHECK(first.closed());
   CHECK(rig.emulator.state_clients() == 4);
   for (ArmRig::Socket* socket : {&b, &c, &d}) CHECK(socket->Receive(kState).size() == kState);
   a.Collect(30);
@@ -262,6 +267,68 @@ TEST_CASE("garbage and floods of connections never stop the controller", "[unit]
   rig.Run(5);
   ArmRig::Socket state = rig.State();
   CHECK(state.Receive(kState).size() == kState);
+}
+
+TEST_CASE("while a motion waits no newcomer takes a state client's place", "[unit]") {
+  ArmRig rig;
+  ArmRig::Socket motion = rig.Motion();
+  Ready(motion);
+  ArmRig::Socket a = rig.State(), b = rig.State(), c = rig.State(), d = rig.State();
+  const JointVector q = rig.arm.Servo().q;
+  Stream(motion, 0, 0.0, q);
+  Stream(motion, 1, 1.0, q + 0.05 * kOnes);
+  ArmRig::Socket newcomer = rig.State();
+  CHECK(newcomer.closed());
+  CHECK_FALSE(a.closed());
+}
+
+TEST_CASE("floods of bytes and of connections leave time for everybody else", "[unit]") {
+  ArmRig rig;
+  ArmRig::Socket flooding = rig.Motion(), honest = rig.State();
+  std::atomic<bool> ends = false;
+  std::thread flood([&] {
+    asio::io_context io;
+    const auto at = [](int port) {
+      return asio::ip::tcp::endpoint(asio::ip::make_address("127.0.0.1"),
+                                     static_cast<std::uint16_t>(port));
+    };
+    const std::string ping = sm::Encode(sm::Request(sm::MotionControl{}));
+    asio::ip::udp::socket datagrams(io, {asio::ip::make_address("127.0.0.1"), 0});
+    while (!ends) {
+      asio::error_code ignored;
+      asio::ip::tcp::socket newcomer(io);
+      newcomer.connect(at(rig.emulator.io_port()), ignored);
+      for (int i = 0; i < 20; ++i) newcomer.write_some(asio::buffer(ping), ignored);
+      datagrams.send_to(asio::buffer(hses::Encode(hses::Request{})),
+                        {asio::ip::make_address("127.0.0.1"),
+                         static_cast<std::uint16_t>(rig.emulator.hses_port())},
+                        0, ignored);
+    }
+  });
+  for (int i = 0; i < 300; ++i) flooding.Send(std::string(200, 'x'));
+  CHECK(honest.Collect(300).size() >= 10 * kState);
+  ends = true;
+  flood.join();
+}
+
+TEST_CASE("hundreds of connections that are held leave room for an honest client", "[unit]") {
+  ArmRig rig;
+  std::vector<asio::ip::tcp::socket> held;
+  for (int i = 0; i < 900; ++i) {
+    const int port = i % 3 == 0   ? rig.emulator.motion_port()
+                     : i % 3 == 1 ? rig.emulator.state_port()
+                                  : rig.emulator.io_port();
+    held.emplace_back(rig.io);
+    asio::error_code ignored;
+    held.back().connect({asio::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(port)},
+                        ignored);
+    if (i % 10 == 9) rig.Run(1);
+  }
+  rig.Run(5);
+  ArmRig::Socket motion = rig.Motion(), io = rig.Io(), state = rig.State();
+  Ready(motion);
+  CHECK(state.Receive(kState).size() == kState);
+  CHECK(io.Ask(sm::Request(sm::ReadBit{10010})).body == sm::Body(sm::ReadBitReply{0, 0}));
 }
 
 TEST_CASE("a state client that does not read is closed and harms nobody", "[unit]") {

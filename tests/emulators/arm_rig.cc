@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "hw_bridge/codecs/little_endian.h"
 #include "tests/support/catch.h"
 #include "tests/support/paper_cell.h"
 
@@ -85,8 +86,7 @@ sm::Message ArmRig::Socket::Ask(const sm::Message& request) {
   Send(sm::Encode(request));
   std::string reply = Receive(sm::kHeadSize);
   REQUIRE(reply.size() == sm::kHeadSize);
-  const auto length = static_cast<unsigned char>(reply[0]);
-  reply += Receive(4u + length - sm::kHeadSize);
+  reply += Receive(4 + Le32At(reply, 0) - sm::kHeadSize);
   const auto decoded = sm::DecodeFront(reply, true);
   REQUIRE(std::holds_alternative<sm::Message>(decoded));
   return std::get<sm::Message>(decoded);

@@ -29,6 +29,10 @@ void TryBytes(std::string_view bytes) {
       Die("no reason");
     }
   }
+  const auto request = DecodeRequestFront(bytes);
+  if (const auto* front = std::get_if<FrontRequest>(&request)) {
+    if (front->size < kHeadSize || front->size > bytes.size()) Die("a request of another size");
+  }
   StreamReader reader;
   std::size_t taken = 0;
   for (std::size_t at = 0; at < bytes.size(); at += 7) {

@@ -11,7 +11,7 @@ void YaskawaConfig::Visit(ConfigVisitor& v) {
   v.Field("motion_port", "TCP, trajectories", motion_port, kPort);
   v.Field("state_port", "TCP, joints and status", state_port, kPort);
   v.Field("io_port", "TCP, inputs and outputs", io_port, kPort);
-  v.Field("hses_port", "UDP, high-speed Ethernet server", hses_port, kPort);
+  v.Field("hses_port", "UDP, high-speed Ethernet server (files: the next port)", hses_port, kPort);
   v.Choice("server",
            "what `emulate` serves: motoros1 takes what MotoROS 1.9.12 takes; strict refuses points "
            "that it takes without a look",

@@ -82,6 +82,8 @@ class ArmController {
   /// At its WAIT.
   bool waiting() const { return job_ == Job::kWaiting; }
   bool contact_stop() const { return contact_stop_; }
+  bool speed_limited() const { return speed_limit_m_s_ > 0.0; }
+  double pulses_per_rad() const { return 1.0 / PulseAngle(); }
   const std::string& job() const { return job_name_; }
   std::array<std::int32_t, kNumJoints> Pulses() const;  ///< Measured.
   ServoState servo() const { return arm_.Servo(); }
@@ -126,7 +128,14 @@ class ArmController {
   std::optional<simple_message::NotReady> WhyNot() const;
   Reaction Answered(simple_message::MotionReply reply) const;
   simple_message::MotionReply HandlePoint(const simple_message::JointPoint& point);
-  std::optional<std::int32_t> WhyInvalid(const simple_message::JointPoint& point) const;
+  Reaction HandlePoints(const simple_message::JointPointEx& points);
+  struct Verdict {
+    simple_message::Result result = simple_message::Result::kSuccess;
+    std::int32_t subcode = 0;
+  };
+  Verdict JudgePoint(const simple_message::JointPoint& point);
+  /// What is left to judge once group and fields are right.
+  Verdict TakePoint(const simple_message::JointPoint& point);
   std::optional<std::int32_t> WhyNotBegin(const simple_message::JointPoint& point) const;
   bool TooFast(const simple_message::Slots& qd_rad_s, int slots) const;
   Reaction HandleControl(const simple_message::MotionControl& control);

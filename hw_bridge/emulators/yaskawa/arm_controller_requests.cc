@@ -1,10 +1,11 @@
 // What a controller answers to the requests of its motion port.
 
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 #include "hw_bridge/emulators/yaskawa/arm_controller.h"
+#include "hw_bridge/emulators/yaskawa/dh_parameters.h"
 
 namespace tubetwin {
 namespace {
@@ -16,6 +17,8 @@ constexpr std::int32_t kStartPulses = 30;
 constexpr double kLongest_s = 14400.0;
 constexpr double kRounding = 1e-5;  ///< Of a float32 at the limit.
 constexpr int kPulseAxes = 8;       ///< That the controller compares at a start.
+constexpr std::int32_t kPointId = 14, kPointsId = 2016;
+constexpr std::int32_t kNeeded = sm::kTime | sm::kPosition | sm::kVelocity;
 
 std::int32_t Code(sm::Invalid why) { return static_cast<std::int32_t>(why); }
 std::int32_t Code(sm::NotReady why) { return static_cast<std::int32_t>(why); }
@@ -36,8 +39,14 @@ ArmController::Reaction ArmController::Handle(const sm::Message& request) {
   if (const auto* point = std::get_if<sm::JointPoint>(&request.body)) {
     return Answered(HandlePoint(*point));
   }
+  if (const auto* points = std::get_if<sm::JointPointEx>(&request.body)) {
+    return HandlePoints(*points);
+  }
   if (const auto* control = std::get_if<sm::MotionControl>(&request.body)) {
     return HandleControl(*control);
+  }
+  if (std::holds_alternative<sm::GetDhParameters>(request.body)) {
+    return {sm::Reply(DhParametersOf(model_)), false};
   }
   if (const auto* tool = std::get_if<sm::SelectTool>(&request.body)) {
     sm::MotionReply reply{tool->group, tool->sequence, 2018, sm::Result::kSuccess, 0, {}};
@@ -47,8 +56,10 @@ ArmController::Reaction ArmController::Handle(const sm::Message& request) {
     }
     return Answered(reply);
   }
-  // A message of another port.
-  return Answered({-1, -1, 0, sm::Result::kInvalid, Code(sm::Invalid::kMessageType), {}});
+  // For the sake of clients from before the I/O port: bits and groups, not registers.
+  if (auto answer = io().Answer(request.body)) return {std::move(*answer), false};
+  // What a controller sends is known by its size, and ends the connection.
+  return {std::nullopt, true};
 }
 
 bool ArmController::TooFast(const sm::Slots& qd_rad_s, int slots) const {
@@ -77,56 +88,82 @@ std::optional<std::int32_t> ArmController::WhyNotBegin(const sm::JointPoint& poi
   return std::nullopt;
 }
 
-std::optional<std::int32_t> ArmController::WhyInvalid(const sm::JointPoint& point) const {
-  constexpr std::int32_t kNeeded = sm::kTime | sm::kPosition | sm::kVelocity;
+ArmController::Verdict ArmController::TakePoint(const sm::JointPoint& point) {
   const bool strict = settings_.server == ArmServer::kStrict;
-  if (point.group != 0) return Code(sm::Invalid::kGroup);
-  if ((point.valid_fields & kNeeded) != kNeeded) return Code(sm::Invalid::kInsufficient);
-  if (point.time_s >= kLongest_s) return Code(sm::Invalid::kTime);
-  if (point.sequence < 0) return Code(sm::Invalid::kSequence);
+  const auto invalid = [](sm::Invalid why) { return Verdict{sm::Result::kInvalid, Code(why)}; };
+  if (point.sequence < 0) return invalid(sm::Invalid::kSequence);
   // MotoROS converts what is no number to whatever its processor makes of it.
-  if (!AllFinite(point)) return Code(sm::Invalid::kData);
-  if (strict && point.time_s < 0.0f) return Code(sm::Invalid::kTime);
-  if (strict && point.sequence == 0 && !queue_.empty()) return Code(sm::Invalid::kSequence);
-  if (strict && point.sequence > 0 && !queue_.begun()) return Code(sm::Invalid::kSequence);
-  return std::nullopt;
-}
-
-sm::MotionReply ArmController::HandlePoint(const sm::JointPoint& point) {
-  sm::MotionReply reply{point.group, point.sequence, 14, sm::Result::kSuccess, 0, {}};
-  const auto refused = [&reply](sm::Result result, std::int32_t subcode) {
-    reply.result = result;
-    reply.subcode = subcode;
-    return reply;
-  };
-  if (refusals_ > 0) {
-    --refusals_;
-    return refused(refusal_, refusal_subcode_);
-  }
-  if (const auto why = WhyNot()) return refused(sm::Result::kNotReady, Code(*why));
-  if (const auto why = WhyInvalid(point)) return refused(sm::Result::kInvalid, *why);
+  if (!AllFinite(point)) return invalid(sm::Invalid::kData);
+  if (strict && point.time_s < 0.0f) return invalid(sm::Invalid::kTime);
   // Times are cut to whole milliseconds, in single precision.
   const IncrementQueue::Point next{static_cast<std::int64_t>(point.time_s * 1000.0f),
                                    sm::ToJoints(point.q_rad), sm::ToJoints(point.qd_rad_s)};
   if (point.sequence == 0) {
-    if (const auto why = WhyNotBegin(point)) return refused(sm::Result::kInvalid, *why);
+    if (strict && !queue_.empty()) return invalid(sm::Invalid::kSequence);
+    if (const auto why = WhyNotBegin(point)) return {sm::Result::kInvalid, *why};
     // Within the 30 pulses: the motion itself begins where the arm was commanded to be.
     queue_.Begin({next.time_ms, arm_.Servo().q_commanded, next.qd});
   } else {
+    if (strict && !queue_.begun()) return invalid(sm::Invalid::kSequence);
     if (queue_.in_process()) {
       ++busy_answers_;
-      return refused(sm::Result::kBusy, 0);
+      return {sm::Result::kBusy, 0};
     }
-    if (TooFast(point.qd_rad_s, kNumJoints)) {
-      return refused(sm::Result::kInvalid, Code(sm::Invalid::kSpeed));
-    }
-    if (settings_.server == ArmServer::kStrict && next.time_ms <= queue_.last_time_ms()) {
-      return refused(sm::Result::kInvalid, Code(sm::Invalid::kTime));
-    }
+    if (TooFast(point.qd_rad_s, kNumJoints)) return invalid(sm::Invalid::kSpeed);
+    if (strict && next.time_ms <= queue_.last_time_ms()) return invalid(sm::Invalid::kTime);
     queue_.Add(next);
   }
   ++points_taken_;
-  return reply;
+  return {};
+}
+
+ArmController::Verdict ArmController::JudgePoint(const sm::JointPoint& point) {
+  if (refusals_ > 0) {
+    --refusals_;
+    return {refusal_, refusal_subcode_};
+  }
+  const auto invalid = [](sm::Invalid why) { return Verdict{sm::Result::kInvalid, Code(why)}; };
+  if (const auto why = WhyNot()) return {sm::Result::kNotReady, Code(*why)};
+  if (point.group != 0) return invalid(sm::Invalid::kGroup);
+  if ((point.valid_fields & kNeeded) != kNeeded) return invalid(sm::Invalid::kInsufficient);
+  if (point.time_s >= kLongest_s) return invalid(sm::Invalid::kTime);
+  return TakePoint(point);
+}
+
+sm::MotionReply ArmController::HandlePoint(const sm::JointPoint& point) {
+  const Verdict verdict = JudgePoint(point);
+  return {point.group, point.sequence, kPointId, verdict.result, verdict.subcode, {}};
+}
+
+ArmController::Reaction ArmController::HandlePoints(const sm::JointPointEx& points) {
+  sm::MotionReply reply{0, points.sequence, kPointsId, sm::Result::kSuccess, 0, {}};
+  const int count = std::min(points.groups, sm::kGroups);
+  // Without a group there is no answer of its own.
+  if (count <= 0) return Unknown(reply);
+  const auto answered = [&](const sm::GroupPoint& part, const Verdict& verdict) {
+    reply.group = part.group;
+    reply.result = verdict.result;
+    reply.subcode = verdict.subcode;
+    return Answered(reply);
+  };
+  if (const auto why = WhyNot()) {
+    return answered(points.points[count - 1], {sm::Result::kNotReady, Code(*why)});
+  }
+  for (int i = 0; i < count; ++i) {
+    const sm::GroupPoint& part = points.points[i];
+    if (part.group != 0) return answered(part, {sm::Result::kInvalid, Code(sm::Invalid::kGroup)});
+    if (queue_.in_process()) return answered(part, {sm::Result::kBusy, 0});
+    if ((part.valid_fields & kNeeded) != kNeeded) {
+      return answered(part, {sm::Result::kInvalid, Code(sm::Invalid::kInsufficient)});
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    const sm::GroupPoint& part = points.points[i];
+    const Verdict verdict = TakePoint({part.group, points.sequence, part.valid_fields, part.time_s,
+                                       part.q_rad, part.qd_rad_s, part.qdd_rad_s2});
+    if (verdict.result != sm::Result::kSuccess) return answered(part, verdict);
+  }
+  return answered(points.points[count - 1], {});
 }
 
 ArmController::Reaction ArmController::HandleControl(const sm::MotionControl& control) {

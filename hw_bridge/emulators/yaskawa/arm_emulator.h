@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <memory>
 #include <string>
@@ -18,7 +19,7 @@ struct ArmEmulatorConfig {
   int motion_port = 50240;
   int state_port = 50241;
   int io_port = 50242;
-  int hses_port = 10040;
+  int hses_port = 10040;  ///< Files are refused on the next one.
   double pulses_per_degree = 1000;
   double state_period_s = 0.025;
   double servo_on_s = 0.2;
@@ -28,7 +29,8 @@ struct ArmEmulatorConfig {
 
 /// A YRC1000 with MotoROS 1 and High-Speed Ethernet Server over the drives of a cell's arm: one
 /// motion client, four state clients, one I/O client; what it accepts and refuses is that of the
-/// controller. One thread, that of the io_context.
+/// controller. Where all places are taken, a newcomer gets the first one, unless a motion waits.
+/// Files are refused. One thread, that of the io_context.
 class ArmEmulator : public Emulator {
  public:
   /// Listens at once. `io`, `arm` and `model` must outlive it. Throws Error(kDevice) when a port is
@@ -42,6 +44,7 @@ class ArmEmulator : public Emulator {
   int state_port() const { return state_.port(); }
   int io_port() const { return io_.port(); }
   int hses_port() const { return hses_.port(); }
+  int hses_file_port() const { return hses_files_.port(); }
 
   // What fault scripts do.
   void ProtectiveStop() { controller_.ProtectiveStop(); }
@@ -75,11 +78,16 @@ class ArmEmulator : public Emulator {
   TcpServer::Admission AdmitMotion(int clients);
   void JoinMotion(Client client);
   void LeaveMotion(Client client);
-  void AnswerMotion(const std::string& answer);
+  TcpServer::Admission AdmitState();
+  void JoinState(Client client);
+  void LeaveState(Client client);
+  /// `to_reply`: what is answered came as an answer itself, and gets none.
+  void AnswerMotion(const std::string& answer, bool to_reply);
   void ReceiveMotion(Client client, std::string_view bytes);
   void HandleMotion();
   void ReceiveIo(Client client, std::string_view bytes);
   std::optional<std::string> AnswerHses(std::string_view datagram);
+  static std::optional<std::string> RefuseFile(std::string_view datagram);
 
   ArmEmulatorConfig config_;
   ArmController controller_;
@@ -87,11 +95,13 @@ class ArmEmulator : public Emulator {
   std::string unhandled_;  ///< Of the motion client: what came behind a request that takes time.
   std::string last_motion_answer_;
   Client motion_client_ = 0;
+  std::array<Client, 4> state_slots_{};  ///< 0: free.
+  bool late_to_reply_ = false;
   bool replacing_ = false;  ///< Who leaves now makes room for somebody else.
   std::uint64_t motion_bytes_ = 0;
   TimeNs next_state_{0};
   TcpServer motion_, state_, io_;
-  UdpServer hses_;
+  UdpServer hses_, hses_files_;
 };
 
 }  // namespace tubetwin

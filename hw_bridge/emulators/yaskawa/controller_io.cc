@@ -1,6 +1,6 @@
 #include "hw_bridge/emulators/yaskawa/controller_io.h"
 
-#include <iterator>
+#include <type_traits>
 
 namespace tubetwin {
 namespace {
@@ -8,9 +8,10 @@ namespace {
 namespace sm = simple_message;
 
 struct AddressRange {
-  std::int32_t first, last;  ///< Bit addresses.
+  std::uint32_t first, last;  ///< Bit addresses.
   bool writable;
 };
+constexpr std::uint32_t kRegisters = 1000000, kLastRegister = 1000999, kLastWritable = 1000559;
 constexpr AddressRange kRanges[] = {
     {10, 5127, false},      // general inputs
     {10010, 15127, true},   // general outputs
@@ -24,64 +25,81 @@ constexpr AddressRange kRanges[] = {
     {70010, 79997, false},  // auxiliary relays
     {80010, 85127, false},  // controller status
     {87010, 87207, false},  // pseudo inputs
+    {kRegisters, kLastWritable, true},
+    {kLastWritable + 1, kLastRegister, false},
 };
-constexpr std::int32_t kRegisters = 1000000, kLastRegister = 1000999, kLastWritable = 1000559;
+constexpr std::uint32_t kBits = 8, kMaxGroup = 0xFF, kMaxRegister = 0xFFFF;
 
-const AddressRange* RangeOfGroup(std::int32_t group) {
+enum class Size { kBit, kGroup, kRegister };
+
+/// The range of an address, as the controller looks for it: bits and groups of registers are
+/// addresses like others.
+const AddressRange* RangeOf(std::uint32_t address, Size size) {
+  if (size != Size::kRegister && address % 10 >= kBits) return nullptr;
   for (const AddressRange& range : kRanges) {
-    if (group >= range.first / 10 && group <= range.last / 10) return &range;
+    if (address >= range.first && address <= range.last) return &range;
   }
   return nullptr;
 }
 
-const AddressRange* RangeOfBit(std::int32_t bit) {
-  if (bit < 0 || bit % 10 > 7) return nullptr;
-  return RangeOfGroup(bit / 10);
-}
+std::uint32_t Unsigned(std::int32_t value) { return static_cast<std::uint32_t>(value); }
 
 struct Answerer {
   ControllerIo& io;
-  std::map<std::int32_t, std::uint8_t>& groups;
 
   using Result = std::optional<sm::Body>;
 
+  template <typename Reply>
+  Reply Read(std::uint32_t address, Size size) const {
+    if (RangeOf(address, size) == nullptr) return Reply{0, sm::kIoReadAddress};
+    if (size != Size::kGroup) return Reply{io.Word(address), 0};
+    if (address % 10 != 0) return Reply{0, sm::kIoReadFailure};
+    std::int32_t value = 0;
+    for (std::uint32_t i = 0; i < kBits; ++i) value |= io.Word(address + i) << i;
+    return Reply{value, 0};
+  }
+  template <typename Reply>
+  Reply Write(std::uint32_t address, Size size, std::uint32_t value) const {
+    const AddressRange* const range = RangeOf(address, size);
+    if (range == nullptr || !range->writable) return Reply{sm::kIoWriteAddress};
+    const std::uint32_t most = size == Size::kBit     ? 1
+                               : size == Size::kGroup ? kMaxGroup
+                                                      : kMaxRegister;
+    if (value > most) return Reply{sm::kIoWriteValue};
+    if (size != Size::kGroup) {
+      io.SetWord(address, static_cast<std::uint16_t>(value));
+      return Reply{0};
+    }
+    if (address % 10 != 0) return Reply{sm::kIoWriteFailure};
+    for (std::uint32_t i = 0; i < kBits; ++i) {
+      io.SetWord(address + i, static_cast<std::uint16_t>(value >> i & 1));
+    }
+    return Reply{0};
+  }
+  static std::uint32_t RegisterAddress(std::int32_t number) {
+    const std::uint32_t address = Unsigned(number);
+    return address < kRegisters ? address + kRegisters : address;
+  }
+
   Result operator()(const sm::ReadBit& r) const {
-    if (RangeOfBit(r.address) == nullptr) return sm::ReadBitReply{0, sm::kIoReadAddress};
-    return sm::ReadBitReply{groups[r.address / 10] >> (r.address % 10) & 1, 0};
+    return Read<sm::ReadBitReply>(Unsigned(r.address), Size::kBit);
   }
   Result operator()(const sm::WriteBit& r) const {
-    const AddressRange* const range = RangeOfBit(r.address);
-    if (range == nullptr || !range->writable) return sm::WriteBitReply{sm::kIoWriteAddress};
-    if (r.value != 0 && r.value != 1) return sm::WriteBitReply{sm::kIoWriteValue};
-    std::uint8_t& group = groups[r.address / 10];
-    const auto bit = static_cast<std::uint8_t>(1u << (r.address % 10));
-    group = static_cast<std::uint8_t>(r.value == 1 ? group | bit : group & ~bit);
-    return sm::WriteBitReply{0};
+    return Write<sm::WriteBitReply>(Unsigned(r.address), Size::kBit, Unsigned(r.value));
   }
+  // Ten times an address may pass 32 bits, here as there.
   Result operator()(const sm::ReadGroup& r) const {
-    if (RangeOfGroup(r.address) == nullptr) return sm::ReadGroupReply{0, sm::kIoReadAddress};
-    return sm::ReadGroupReply{groups[r.address], 0};
+    return Read<sm::ReadGroupReply>(10u * Unsigned(r.address), Size::kGroup);
   }
   Result operator()(const sm::WriteGroup& r) const {
-    const AddressRange* const range = RangeOfGroup(r.address);
-    if (range == nullptr || !range->writable) return sm::WriteGroupReply{sm::kIoWriteAddress};
-    if (r.value < 0 || r.value > 255) return sm::WriteGroupReply{sm::kIoWriteValue};
-    groups[r.address] = static_cast<std::uint8_t>(r.value);
-    return sm::WriteGroupReply{0};
+    return Write<sm::WriteGroupReply>(10u * Unsigned(r.address), Size::kGroup, Unsigned(r.value));
   }
   Result operator()(const sm::ReadRegister& r) const {
-    if (r.address < kRegisters || r.address > kLastRegister) {
-      return sm::ReadRegisterReply{0, sm::kIoReadAddress};
-    }
-    return sm::ReadRegisterReply{io.Register(r.address - kRegisters), 0};
+    return Read<sm::ReadRegisterReply>(RegisterAddress(r.address), Size::kRegister);
   }
   Result operator()(const sm::WriteRegister& r) const {
-    if (r.address < kRegisters || r.address > kLastWritable) {
-      return sm::WriteRegisterReply{sm::kIoWriteAddress};
-    }
-    if (r.value < 0 || r.value > 65535) return sm::WriteRegisterReply{sm::kIoWriteValue};
-    io.SetRegister(r.address - kRegisters, static_cast<std::uint16_t>(r.value));
-    return sm::WriteRegisterReply{0};
+    return Write<sm::WriteRegisterReply>(RegisterAddress(r.address), Size::kRegister,
+                                         Unsigned(r.value));
   }
   template <typename Other>
   Result operator()(const Other&) const {
@@ -89,12 +107,38 @@ struct Answerer {
   }
 };
 
+/// The result of a reply.
+struct ResultOf {
+  template <typename Reply>
+  std::int32_t operator()(const Reply& reply) const {
+    if constexpr (requires { reply.result == 0; }) {
+      if constexpr (std::is_same_v<decltype(reply.result), std::int32_t>) return reply.result;
+    }
+    return 0;
+  }
+};
+
 std::int32_t GroupOfOutput(int number) { return 1001 + (number - 1) / 8; }
 
 }  // namespace
 
-std::optional<sm::Body> ControllerIo::Answer(const sm::Body& request) {
-  return std::visit(Answerer{*this, groups_}, request);
+std::optional<sm::Message> ControllerIo::Answer(const sm::Body& request) {
+  const std::optional<sm::Body> body = std::visit(Answerer{*this}, request);
+  if (!body) return std::nullopt;
+  sm::Message answer = sm::Reply(*body);
+  if (std::visit(ResultOf{}, *body) != 0) answer.reply = sm::ReplyCode::kFailure;
+  return answer;
+}
+
+std::uint16_t ControllerIo::Word(std::uint32_t address) const {
+  if (address >= kRegisters) return Register(static_cast<int>(address - kRegisters));
+  const auto found = groups_.find(static_cast<std::int32_t>(address / 10));
+  return found == groups_.end() ? 0 : found->second >> (address % 10) & 1;
+}
+
+void ControllerIo::SetWord(std::uint32_t address, std::uint16_t value) {
+  if (address >= kRegisters) return SetRegister(static_cast<int>(address - kRegisters), value);
+  SetBit(static_cast<std::int32_t>(address), value != 0);
 }
 
 void ControllerIo::SetBit(std::int32_t address, bool on) {
@@ -113,7 +157,7 @@ bool ControllerIo::Output(int number) const {
 }
 
 std::optional<std::uint8_t> ControllerIo::Group(std::int32_t address) const {
-  if (RangeOfGroup(address) == nullptr) return std::nullopt;
+  if (RangeOf(10u * Unsigned(address), Size::kGroup) == nullptr) return std::nullopt;
   const auto found = groups_.find(address);
   return found == groups_.end() ? std::uint8_t{0} : found->second;
 }

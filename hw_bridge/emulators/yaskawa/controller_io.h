@@ -12,8 +12,13 @@ namespace tubetwin {
 /// I/O use, and M registers. Nothing is wired to it but what the controller itself writes.
 class ControllerIo {
  public:
-  /// Answers a request of the I/O port; nothing when it is none.
-  std::optional<simple_message::Body> Answer(const simple_message::Body& request);
+  /// Answers a request for bits, groups or registers; nothing when it is none. Failures are told by
+  /// result and reply code.
+  std::optional<simple_message::Message> Answer(const simple_message::Body& request);
+
+  /// A bit (0 or 1), or a register from 1000000 on, by its address.
+  std::uint16_t Word(std::uint32_t address) const;
+  void SetWord(std::uint32_t address, std::uint16_t value);
 
   /// OUT#`number`, from 1; what MotoROS tells the cell by it is 889 to 896.
   void SetOutput(int number, bool on);
