@@ -69,12 +69,12 @@ TEST_CASE("simple_message has the documented bytes both ways", "[unit]") {
 
 TEST_CASE("simple_message sizes are the documented ones", "[unit]") {
   const auto [id, comm, size] = GENERATE(table<int, Comm, std::size_t>({
-      {1, Comm::kRequest, 16},    {13, Comm::kTopic, 44},     {14, Comm::kRequest, 152},
-      {15, Comm::kTopic, 148},    {2001, Comm::kRequest, 68}, {2002, Comm::kReply, 76},
-      {2003, Comm::kRequest, 20}, {2004, Comm::kReply, 24},   {2005, Comm::kRequest, 24},
-      {2006, Comm::kReply, 20},   {2007, Comm::kRequest, 20}, {2008, Comm::kReply, 24},
-      {2009, Comm::kRequest, 24}, {2010, Comm::kReply, 20},   {2012, Comm::kRequest, 20},
-      {2012, Comm::kReply, 24},   {2013, Comm::kRequest, 24}, {2013, Comm::kReply, 20},
+      {1, Comm::kRequest, 16},    {13, Comm::kTopic, 44},      {14, Comm::kRequest, 152},
+      {15, Comm::kTopic, 148},    {2001, Comm::kRequest, 68},  {2002, Comm::kReply, 76},
+      {2003, Comm::kRequest, 20}, {2004, Comm::kReply, 24},    {2005, Comm::kRequest, 24},
+      {2006, Comm::kReply, 20},   {2007, Comm::kRequest, 20},  {2008, Comm::kReply, 24},
+      {2009, Comm::kRequest, 24}, {2010, Comm::kReply, 20},    {2012, Comm::kRequest, 20},
+      {2012, Comm::kReply, 24},   {2013, Comm::kRequest, 24},  {2013, Comm::kReply, 20},
       {2018, Comm::kRequest, 28}, {2016, Comm::kRequest, 552}, {2020, Comm::kRequest, 16},
       {2020, Comm::kReply, 528},
   }));
@@ -86,8 +86,9 @@ TEST_CASE("simple_message sizes are the documented ones", "[unit]") {
 
 /// Any bytes of a known size: every pattern of bits is a value.
 std::string RandomMessage(RandomStream& stream) {
-  static constexpr std::int32_t kIds[] = {1,    13,   14,   15,   2001, 2002, 2003, 2004, 2005,
-                                          2006, 2007, 2008, 2009, 2010, 2012, 2013, 2016, 2018, 2020};
+  static constexpr std::int32_t kIds[] = {1,    13,   14,   15,   2001, 2002, 2003,
+                                          2004, 2005, 2006, 2007, 2008, 2009, 2010,
+                                          2012, 2013, 2016, 2018, 2020};
   for (;;) {
     const std::int32_t id = kIds[stream.Index(std::size(kIds))];
     const auto comm = static_cast<std::int32_t>(1 + stream.Index(3));
