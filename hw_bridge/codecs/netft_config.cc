@@ -142,12 +142,27 @@ std::variant<double, DecodeError> UnitOf(const std::pair<const char*, double> (&
   return DecodeError{std::string(of) + " unit \"" + unit.substr(0, 40) + "\"; allowed: " + allowed};
 }
 
-/// Shortest text that reads back as the same number.
+/// Shortest text without an exponent that reads back as the same number.
 std::string NumberText(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  char text[400];  // The longest double has 309 digits before its point.
+  const auto [end, error] =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::fixed);
   return std::string(text, error == std::errc() ? end : text);
 }
+
+/// A page of one element of elements.
+class PageWriter {
+ public:
+  explicit PageWriter(const std::string& root)
+      : xml_("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<" + root + ">\n"), root_(root) {}
+  void Put(const char* tag, const std::string& text) {
+    xml_ += std::string("  <") + tag + ">" + Escaped(text) + "</" + tag + ">\n";
+  }
+  std::string Page() const { return xml_ + "</" + root_ + ">\n"; }
+
+ private:
+  std::string xml_, root_;
+};
 
 }  // namespace
 
@@ -157,6 +172,9 @@ std::variant<NetftPage, DecodeError> DecodeNetftPage(std::string_view xml) {
   }
   NetftPage page;
   page.product = TextOf(xml, "prodname").value_or("");
+  page.configuration = TextOf(xml, "cfgnam").value_or("");
+  page.serial = TextOf(xml, "cfgcalsn").value_or("");
+  page.ratings = TextOf(xml, "cfgmr").value_or("");
   if (auto error = ReadPositive(xml, "cfgcpf", page.counts_per_force)) return *error;
   if (auto error = ReadPositive(xml, "cfgcpt", page.counts_per_torque)) return *error;
   const std::optional<std::string> force = TextOf(xml, "scfgfu"), torque = TextOf(xml, "scfgtu");
@@ -179,21 +197,36 @@ std::variant<NetftPage, DecodeError> DecodeNetftPage(std::string_view xml) {
 }
 
 std::string EncodeNetftPage(const NetftPage& page) {
-  std::string xml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<netft>\n";
-  const auto put = [&xml](const char* tag, const std::string& text) {
-    xml += std::string("  <") + tag + ">" + text + "</" + tag + ">\n";
-  };
-  put("prodname", Escaped(page.product));
+  PageWriter xml("netft");
+  xml.Put("prodname", page.product);
   char status[16];
   std::snprintf(status, sizeof status, "0x%08x", page.status);
-  put("runstat", status);
-  put("cfgcpf", NumberText(page.counts_per_force));
-  put("cfgcpt", NumberText(page.counts_per_torque));
-  put("scfgfu", Escaped(page.force_unit));
-  put("scfgtu", Escaped(page.torque_unit));
-  put("comrdte", "Enabled");
-  if (page.rate_Hz > 0.0) put("comrdtrate", NumberText(page.rate_Hz));
-  return xml + "</netft>\n";
+  xml.Put("runstat", status);
+  xml.Put("setcfgsel", "0");
+  xml.Put("setserial", page.serial);
+  xml.Put("cfgnam", page.configuration);
+  xml.Put("cfgcalsel", "0");
+  xml.Put("cfgcalsn", page.serial);
+  xml.Put("scfgfu", page.force_unit);
+  xml.Put("scfgtu", page.torque_unit);
+  xml.Put("cfgcpf", NumberText(page.counts_per_force));
+  xml.Put("cfgcpt", NumberText(page.counts_per_torque));
+  xml.Put("cfgmr", page.ratings);
+  xml.Put("comrdte", "Enabled");
+  if (page.rate_Hz > 0.0) xml.Put("comrdtrate", NumberText(page.rate_Hz));
+  return xml.Page();
+}
+
+std::string EncodeNetftCalibrationPage(const NetftPage& page) {
+  PageWriter xml("netftCalibration");
+  xml.Put("calsn", page.serial);
+  xml.Put("calpn", page.configuration);
+  xml.Put("scalfu", page.force_unit);
+  xml.Put("scaltu", page.torque_unit);
+  xml.Put("calcpf", NumberText(page.counts_per_force));
+  xml.Put("calcpt", NumberText(page.counts_per_torque));
+  xml.Put("calmr", page.ratings);
+  return xml.Page();
 }
 
 std::variant<RdtScale, DecodeError> ScaleOf(const NetftPage& page) {

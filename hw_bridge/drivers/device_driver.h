@@ -23,7 +23,10 @@ struct DriverContext {
   /// are.
   bool may_move = false;
   /// For scanners: X_NS as the pipeline believes it now. Asked for on the pick cycle's thread.
-  std::function<RigidTransform()> believed_X_NS;
+  std::function<RigidTransform()> believed_X_NS = {};
+  /// A person's word for a step that could drop what the cell holds, asked with what it is: false,
+  /// and the device is not connected. Empty: nobody is there.
+  std::function<bool(const std::string& what)> confirm = {};
 };
 
 /// One way to reach a driver's device.
@@ -54,6 +57,8 @@ class DeviceDriver {
   virtual void ValidateOrThrow(const std::string& /*link*/) const {}
   /// Where the device is looked for, for messages; may be empty.
   virtual std::string Address() const { return {}; }
+  /// What only one program at a time may use, as "192.168.1.1:49152"; empty: nothing of the kind.
+  virtual std::string Owned(const std::string& /*link*/) const { return Address(); }
   /// The device, ready for use. Throws Error(kConfig), and Error(kDevice) naming device, place and
   /// what was awaited, within 10 s.
   virtual std::unique_ptr<Device> Connect(const std::string& link,

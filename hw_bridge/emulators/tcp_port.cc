@@ -22,7 +22,7 @@ struct Client {
   std::uint64_t id = 0;
   tcp::socket socket;
   std::string received, unsent;
-  TimeNs heard{0};
+  TimeNs heard{0};  ///< When its newest whole message came; of its begin before that.
   bool finishing = false, gone = false;
 };
 
@@ -60,7 +60,7 @@ struct TcpPort::Impl {
     return true;
   }
 
-  static void Receive(Client& client, TimeNs now) {
+  static void Receive(Client& client) {
     std::array<char, 4096> bytes;
     while (client.received.size() <= kMaxReceived) {
       asio::error_code error;
@@ -70,7 +70,6 @@ struct TcpPort::Impl {
         return;
       }
       client.received.append(bytes.data(), size);
-      client.heard = now;
     }
   }
 
@@ -124,11 +123,13 @@ int TcpPort::clients() const { return static_cast<int>(impl_->list.size()); }
 void TcpPort::Poll(TimeNs now, const Take& take) {
   impl_->Accept(now);
   for (Client& client : impl_->list) {
-    Impl::Receive(client, now);
-    if (!client.received.empty() && take(client.id, client.received) == Verdict::kClose) {
+    Impl::Receive(client);
+    const std::size_t before = client.received.size();
+    if (before > 0 && take(client.id, client.received) == Verdict::kClose) {
       client.finishing = true;
       client.received.clear();
     }
+    if (client.received.size() < before) client.heard = now;
     if (client.received.size() > kMaxReceived) client.gone = true;
     Impl::Flush(client);
   }

@@ -71,6 +71,31 @@ TEST_CASE("Other units of the box are converted, unknown ones are refused", "[un
   CHECK_THAT(std::get<DecodeError>(ScaleOf(page)).reason, Contains("torque unit \"\""));
 }
 
+TEST_CASE("Numbers of the pages are whole where they are, and never have an exponent", "[unit]") {
+  NetftPage page;
+  page.serial = "FT1";
+  page.ratings = "65;65;200;5;5;5";
+  page.rate_Hz = 7000;
+  for (const auto& [count, text] : std::vector<std::pair<double, std::string>>{
+           {1e6, "1000000"}, {1e9, "1000000000"}, {20.0, "20"}, {333.33, "333.33"}}) {
+    page.counts_per_force = page.counts_per_torque = count;
+    const std::string xml = EncodeNetftPage(page), cal = EncodeNetftCalibrationPage(page);
+    CHECK_THAT(xml, Contains("<cfgcpf>" + text + "</cfgcpf>") &&
+                        Contains("<cfgcpt>" + text + "</cfgcpt>") &&
+                        Contains("<comrdtrate>7000</comrdtrate>"));
+    CHECK_THAT(cal, Contains("<calcpf>" + text + "</calcpf>") &&
+                        Contains("<calcpt>" + text + "</calcpt>"));
+  }
+  // What clients split the page at: the active configuration, then its calibration.
+  CHECK_THAT(EncodeNetftPage(page),
+             Contains("<setcfgsel>0</setcfgsel>") && Contains("<cfgcalsel>0</cfgcalsel>") &&
+                 Contains("<cfgnam></cfgnam>") && Contains("<setserial>FT1</setserial>") &&
+                 Contains("<cfgmr>65;65;200;5;5;5</cfgmr>"));
+  CHECK_THAT(EncodeNetftCalibrationPage(page),
+             Contains("<netftCalibration>") && Contains("<calsn>FT1</calsn>") &&
+                 Contains("<scalfu>N</scalfu>") && Contains("<scaltu>N-m</scaltu>"));
+}
+
 TEST_CASE("A page that is none says what is wrong", "[unit]") {
   CHECK_THAT(Reason(""), Contains("no <cfgcpf>"));
   CHECK_THAT(Reason(Replaced(kPage, "<cfgcpt>", "<cfgcpx>")), Contains("no <cfgcpt>"));

@@ -120,6 +120,23 @@ TEST_CASE("Saturation is told, a latched threshold is not, a fault is no sample"
   CHECK(bench.driver.Read().time == old);
 }
 
+TEST_CASE("Counts that stay the same on all axes are a stuck sensor, not a load", "[unit]") {
+  Bench bench;
+  CHECK(bench.EventuallyReads(10.0));
+  CHECK(Eventually([&] { return !bench.driver.Read().problem.empty(); }));
+  CHECK_THAT(bench.driver.Read().problem, Contains("the same counts for 0.1"));
+  const TimeNs stuck = bench.driver.Read().time;
+  // One count of one axis is enough to be alive.
+  for (int i = 0; i < 60; ++i) {
+    bench.served.With(
+        [&](auto&, SetWrist& sensor) { sensor.sample.wrench_K.torque_Nm.z() += 1e-6; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    const WrenchSample sample = bench.driver.Read();
+    if (sample.time > stuck + FromSeconds(0.05)) CHECK(sample.problem.empty());
+  }
+  CHECK(bench.driver.Read().time > stuck + FromSeconds(0.1));
+}
+
 TEST_CASE("A silent box is not asked again, and its sample gets old", "[unit]") {
   Bench bench;
   CHECK(bench.EventuallyReads(10.0));

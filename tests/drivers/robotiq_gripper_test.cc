@@ -1,9 +1,11 @@
 #include "hw_bridge/drivers/robotiq/robotiq_gripper.h"
 
+#include <asio.hpp>
 #include <limits>
 #include <memory>
 
 #include "models/base/error.h"
+#include "tests/codecs/hex.h"
 #include "tests/drivers/served.h"
 #include "tests/support/catch.h"
 #include "tests/support/paper_scale.h"
@@ -138,6 +140,101 @@ TEST_CASE("An object that is lost is told", "[unit]") {
   }
   CHECK(Eventually([&] { return bench.driver->State().object == GripperObject::kAtPosition; }));
   CHECK(bench.driver->State().opening_m == 0.0);
+}
+
+/// Writes the action registers as another client would.
+void WriteByAnother(int port, const GripperAction& action) {
+  asio::io_context io;
+  asio::ip::tcp::socket socket(io);
+  socket.connect({asio::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(port)});
+  std::string request = test::FromHex("0001 0000 000D 09 10 03E8 0003 06");
+  for (const std::uint16_t word : EncodeGripperAction(action)) {
+    request += static_cast<char>(word >> 8);
+    request += static_cast<char>(word & 255);
+  }
+  asio::write(socket, asio::buffer(request));
+  char answer[12];
+  asio::read(socket, asio::buffer(answer));
+}
+
+TEST_CASE("A gripper that follows another client's request is told as somebody else's", "[unit]") {
+  Bench bench;
+  const int port = bench.config.port;
+  GripperAction action;
+  action.activate = action.go_to = true;
+  SECTION("that opens what is held") {
+    bench.served.With([](auto&, MovingFingers& fingers) { fingers.object_m = 0.025; });
+    bench.driver->Command({0.0, 0.1, 60.0});
+    REQUIRE(bench.Await().object == GripperObject::kContactClosing);
+    CHECK(bench.driver->State().problem.empty());
+    action.position = 3;
+    WriteByAnother(port, action);
+    CHECK(Eventually([&] { return !bench.driver->State().problem.empty(); }));
+    CHECK(bench.driver->State().problem ==
+          "another client commands the gripper: it was told to go "
+          "to 85.0 mm, by this program to 0.0 mm");
+  }
+  SECTION("that stops it") {
+    bench.driver->Command({0.0, 0.02, 60.0});
+    action.go_to = false;
+    action.position = 230;
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    WriteByAnother(port, action);
+    CHECK(Eventually([&] { return !bench.driver->State().problem.empty(); }));
+    CHECK_THAT(bench.driver->State().problem, Contains("told to go nowhere"));
+  }
+  SECTION("before this program commands anything") {
+    action.position = 116;
+    WriteByAnother(port, action);
+    CHECK(Eventually([&] { return !bench.driver->State().problem.empty(); }));
+    CHECK_THAT(bench.driver->State().problem, Contains("by this program nowhere"));
+  }
+  const std::string first = bench.driver->State().problem;
+  bench.driver->Command({0.03, 0.1, 60.0});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  CHECK(bench.driver->State().problem == first);  // Once is enough.
+}
+
+TEST_CASE("Fingers that may hold something are not activated without a person's word", "[unit]") {
+  ServedGripper served;
+  RobotiqConfig config = To(served);
+  const RunningClock clock(kServedRate);
+  for (const double object_m : {0.025, -1.0}) {
+    CAPTURE(object_m);
+    {
+      RobotiqGripper driver(config, clock);
+      served.With([&](auto&, MovingFingers& fingers) { fingers.object_m = object_m; });
+      driver.Command({0.0, 0.1, 60.0});
+      CHECK(Eventually([&] { return driver.State().object != GripperObject::kMoving; }));
+    }
+    served.With([](GripperEmulator& emulator, auto&) {
+      emulator.controller().RaiseFault(kGripperFaultCurrent);
+    });
+    const auto commands = [&] {
+      return served.With([](auto&, MovingFingers& fingers) { return fingers.commands.size(); });
+    };
+    const auto before = commands();
+    std::string asked;
+    config.confirm = [&](const std::string& what) {
+      asked = what;
+      return false;
+    };
+    if (object_m < 0.0) {  // Closed on nothing: there is nothing to ask.
+      CHECK(RobotiqGripper(config, clock).State().activated);
+      CHECK(asked.empty());
+      continue;
+    }
+    CHECK_THROWS_WITH(RobotiqGripper(config, clock),
+                      Contains("needs activation (gSTA 3, gFLT 0x0E (over-current))") &&
+                          Contains("they stand 25.1 mm apart and may hold something"));
+    CHECK_THAT(asked, Contains("take it out first"));
+    config.confirm = nullptr;
+    CHECK_THROWS_WITH(RobotiqGripper(config, clock), Contains("may hold something"));
+    CHECK(commands() == before);
+    served.With([](auto&, MovingFingers& fingers) { fingers.object_m = -1.0; });
+    config.confirm = [](const std::string&) { return true; };
+    CHECK(RobotiqGripper(config, clock).State().activated);
+  }
 }
 
 TEST_CASE("A link that stumbles is used on, commands are not lost", "[unit]") {

@@ -1,5 +1,7 @@
 #include "hw_bridge/emulators/robotiq/gripper_controller.h"
 
+#include <algorithm>
+
 #include "tests/support/catch.h"
 #include "tests/support/moving_fingers.h"
 #include "tests/support/paper_scale.h"
@@ -225,6 +227,54 @@ TEST_CASE("A fault stops fingers that open, and nothing else opens them", "[unit
   CHECK(bench.fingers.opening_m() == Approx(stopped_m).margin(1e-9));
 }
 
+TEST_CASE("Without rGTO or rACT moving fingers stop, and pressing ones press on", "[unit]") {
+  for (const bool closing : {true, false}) {
+    for (const bool reset : {true, false}) {
+      CAPTURE(closing, reset);
+      Bench bench;
+      GripperAction action = bench.Activate();
+      action.go_to = true;
+      action.speed = action.force = 128;
+      action.position = 255;
+      bench.Write(action);
+      bench.Advance(closing ? 0.2 : 1.5);
+      if (!closing) {
+        action.position = 0;
+        bench.Write(action);
+        bench.Advance(0.2);
+      }
+      action.go_to = false;
+      action.activate = !reset;
+      bench.Write(action);
+      const double stopped_m = bench.fingers.opening_m();
+      CHECK(stopped_m > 0.01);
+      CHECK(stopped_m < 0.08);
+      bench.Advance(1.0);
+      CHECK(bench.fingers.opening_m() == Approx(stopped_m).margin(1e-9));
+    }
+  }
+  Bench holding;
+  GripperAction action = holding.Activate();
+  holding.fingers.object_m = 0.025;
+  action = holding.Close(action);
+  holding.Advance(1.0);
+  const auto commands = holding.fingers.commands.size();
+  action.go_to = false;
+  holding.Write(action);
+  holding.Write({});
+  holding.Advance(0.5);
+  CHECK(holding.fingers.commands.size() == commands);
+}
+
+TEST_CASE("The registers may begin elsewhere, both at 0", "[unit]") {
+  MovingFingers fingers;
+  GripperController controller(fingers, PaperScale(), 0, 0);
+  controller.Write(0, {0x0100, 0, 0});
+  CHECK(controller.Read(0, 1) == std::vector<std::uint16_t>{0x1100});
+  CHECK_FALSE(controller.IsReadable(kGripperStatusStart, 1));
+  CHECK_FALSE(controller.IsWritable(kGripperActionStart, 1));
+}
+
 TEST_CASE("Registers can be read and written in part, and no others", "[unit]") {
   Bench bench;
   (void)bench.Activate();
@@ -233,9 +283,17 @@ TEST_CASE("Registers can be read and written in part, and no others", "[unit]") 
   CHECK(words == std::vector<std::uint16_t>{0x0100, 0x0042, 0x8040});
   CHECK(bench.controller.Read(kGripperStatusStart + 1, 1) == std::vector<std::uint16_t>{0x0042});
   for (const int start : {0, 0x03E7, 0x03E9, 0x07CF, 0x07D1, 0xFFFF}) {
-    CHECK_FALSE(bench.controller.IsReadable(start, 3));
-    CHECK_FALSE(bench.controller.IsWritable(start, 3));
+    CHECK_FALSE(bench.controller.IsReadable(start, 16));
+    CHECK_FALSE(bench.controller.IsWritable(start, 16));
   }
+  // Clients read and write more than there is: the rest is 0 and means nothing.
+  const std::vector<std::uint16_t> all = bench.controller.Read(kGripperStatusStart, 16);
+  REQUIRE(all.size() == 16);
+  CHECK(all[1] == 0x0042);
+  CHECK(std::all_of(all.begin() + 3, all.end(), [](std::uint16_t word) { return word == 0; }));
+  bench.controller.Write(kGripperActionStart + 2, {0x1020, 0xFFFF, 0xFFFF});
+  CHECK(bench.controller.Read(kGripperActionStart, 5) ==
+        std::vector<std::uint16_t>{0x0100, 0x0042, 0x1020, 0, 0});
   CHECK_FALSE(bench.controller.IsWritable(kGripperStatusStart, 1));
 }
 

@@ -6,7 +6,9 @@
 #include <asio.hpp>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <thread>
+#include <vector>
 
 #include "models/base/error.h"
 #include "models/base/random.h"
@@ -92,14 +94,17 @@ TEST_CASE("Modbus TCP requests are answered with the registers", "[unit]") {
   CHECK(client.Ask("0005 0000 0011 09 17 07D0 0002 03E8 0003 06 0900 00FF FFFF") ==
         ToSpacedHex(FromHex("0005 0000 0007 09 17 04 3900 00FF")));
   CHECK(bench.fingers.commands.back().opening_m == 0.0);
-  CHECK(bench.emulator.requests() == 5);
+  // What the ROS 2 driver reads: six registers.
+  CHECK(client.Ask("0006 0000 0006 09 03 07D0 0006") ==
+        ToSpacedHex(FromHex("0006 0000 000F 09 03 0C 3900 00FF 0319 0000 0000 0000")));
+  CHECK(bench.emulator.requests() == 6);
 }
 
 TEST_CASE("Modbus TCP requests that are none of the gripper's are refused", "[unit]") {
   Bench bench;
   TcpClient client(bench);
   const auto [why, request, code] = GENERATE(table<const char*, const char*, const char*>({
-      {"address", "0001 0000 0006 09 03 07D0 0004", "83 02"},
+      {"address", "0001 0000 0006 09 03 07D0 0011", "83 02"},
       {"address", "0001 0000 0006 09 04 0000 0001", "84 02"},
       {"address", "0001 0000 0009 09 10 07D0 0001 02 0000", "90 02"},
       {"count", "0001 0000 0006 09 03 07D0 0000", "83 03"},
@@ -114,6 +119,26 @@ TEST_CASE("Modbus TCP requests that are none of the gripper's are refused", "[un
   CHECK_THAT(client.Ask(request), Catch::Matchers::EndsWith(code));
   CHECK(bench.fingers.commands.empty());
   CHECK_THAT(client.Ask("0002 0000 0006 09 03 07D0 0001"), Contains("00 02"));
+}
+
+TEST_CASE("Clients that trickle bytes into every place do not keep an honest one out", "[unit]") {
+  Bench bench;
+  std::vector<std::unique_ptr<TcpClient>> slow;
+  for (int i = 0; i < 8; ++i) slow.push_back(std::make_unique<TcpClient>(bench));
+  const std::string head = FromHex("0001 0000 00");
+  for (const char byte : head) {
+    for (const auto& client : slow) client->Send(std::string(1, byte));
+    for (int i = 0; i < 300; ++i) bench.Step();
+  }
+  TcpClient honest(bench);
+  CHECK(honest.Ask("0001 0000 0006 09 03 07D0 0001") ==
+        ToSpacedHex(FromHex("0001 0000 0005 09 03 02 0000")));
+  // Whoever asks in time keeps the place.
+  for (int i = 0; i < 8; ++i) {
+    for (int k = 0; k < 300; ++k) bench.Step();
+    CHECK(honest.Ask("0001 0000 0006 09 03 07D0 0001") != "closed");
+    slow.push_back(std::make_unique<TcpClient>(bench));
+  }
 }
 
 TEST_CASE("Requests may come in pieces and in heaps", "[unit]") {

@@ -280,7 +280,16 @@ TEST_CASE("The configuration page is served over HTTP, and nothing else", "[unit
   CHECK(std::get<NetftPage>(page).counts_per_force == 250000);
   CHECK(std::get<NetftPage>(page).counts_per_torque == 1e6);
   CHECK(std::get<NetftPage>(page).rate_Hz == 500);
-  CHECK_THAT(bench.Http("GET / HTTP/1.0\r\n\r\n"), Contains("404 Not Found"));
+  for (const char* target :
+       {"/netftapi2.xml?index=0", "/netftapi2.xml?index=15", "/netftcalapi.xml?index=0"}) {
+    CHECK_THAT(bench.Http(std::string("GET ") + target + " HTTP/1.0\r\n\r\n"),
+               Contains("200 OK") && Contains("cpf>250000</c"));
+  }
+  for (const char* target : {"/", "/netftapi2.xml?index=16", "/netftapi2.xml?x=0", "/netftapi2.xm",
+                             "/../netftapi2.xml", "?index=0"}) {
+    CHECK_THAT(bench.Http(std::string("GET ") + target + " HTTP/1.0\r\n\r\n"),
+               Contains("404 Not Found"));
+  }
   CHECK_THAT(bench.Http("POST /netftapi2.xml HTTP/1.0\r\n\r\n"), Contains("405"));
   CHECK(bench.Http(std::string(20000, 'x')).empty());
   CHECK_THAT(bench.Http("GET /netftapi2.xml HTTP/1.0\r\n\r\n"), Contains("200 OK"));

@@ -41,7 +41,10 @@ void TryBytes(std::string_view bytes) {
   } else {
     Require(std::get<RdtScale>(scale).counts_per_N > 0, "a scale that is none");
   }
-  if (!IsPlain(page.product) || !IsPlain(page.force_unit) || !IsPlain(page.torque_unit)) return;
+  for (const std::string* text : {&page.product, &page.force_unit, &page.torque_unit,
+                                  &page.configuration, &page.serial, &page.ratings}) {
+    if (!IsPlain(*text)) return;
+  }
   const auto again = DecodeNetftPage(EncodeNetftPage(page));
   Require(std::holds_alternative<NetftPage>(again) && std::get<NetftPage>(again) == page,
           "another page");
@@ -52,6 +55,9 @@ std::vector<std::string> ByteCorpus() {
   page.product = "ATI <Net> & F/T";
   page.rate_Hz = 7000;
   page.status = 0x80020000;
+  page.configuration = "of the cell";
+  page.serial = "FT1";
+  page.ratings = "65;65;200;5;5;5";
   NetftPage other = page;
   other.force_unit = "lbf";
   other.torque_unit = "lbf-in";

@@ -36,6 +36,8 @@ GripperEmulatorConfig GripperAt(const CellConfig& cell, const CellModel& model,
   config.listen = places.listen;
   config.port = places.any_ports ? 0 : gripper.port;
   config.slave = gripper.slave;
+  config.action_start = gripper.action_start;
+  config.status_start = gripper.status_start;
   config.scale = ScaleOf(model.gripper);
   if (cell.gripper.driver == "modbus_rtu") {
     config.transport = "rtu";
@@ -44,13 +46,15 @@ GripperEmulatorConfig GripperAt(const CellConfig& cell, const CellModel& model,
   return config;
 }
 
-WristEmulatorConfig WristAt(const NetftConfig& wrist, const EmulationPlaces& places) {
+WristEmulatorConfig WristAt(const NetftConfig& wrist, const CellModel& model,
+                            const EmulationPlaces& places) {
   WristEmulatorConfig config;
   config.listen = places.listen;
   config.port = places.any_ports ? 0 : wrist.port;
   config.http_port = places.any_ports ? 0 : wrist.http_port;
   config.counts_per_N = wrist.counts_per_N;
   config.counts_per_Nm = wrist.counts_per_Nm;
+  config.range = model.wrist.range;
   return config;
 }
 
@@ -81,7 +85,7 @@ struct EmulatedCell::Impl {
             ArmAt(given.cell.arm.drivers.Get<YaskawaDriver>().config, at)),
         gripper(io, twin.cell().gripper, GripperAt(given.cell, twin.cell().model, at)),
         wrist(io, twin.cell().wrist,
-              WristAt(given.cell.wrist.drivers.Get<NetftDriver>().config, at)),
+              WristAt(given.cell.wrist.drivers.Get<NetftDriver>().config, twin.cell().model, at)),
         scanner(ScannerAt(twin.cell().scanner, given, at)),
         moments(twin.cell().model, twin.cell().bin) {}
 

@@ -24,6 +24,10 @@ std::unique_ptr<ForceTorqueSensor> NetftDriver::Connect(const std::string&,
   return std::make_unique<NetftSensor>(used, context.clock);
 }
 
+std::string NetftDriver::Owned(const std::string&) const {
+  return config.host + ":" + std::to_string(config.port);
+}
+
 void NetftDriver::CountLink(const ForceTorqueSensor& device, Json& counts) const {
   const auto* sensor = dynamic_cast<const NetftSensor*>(&device);
   if (sensor == nullptr) return;

@@ -16,6 +16,7 @@ class NetftDriver : public DeviceDriver<ForceTorqueSensor> {
   void Visit(ConfigVisitor& v) override;
   std::unique_ptr<ForceTorqueSensor> Connect(const std::string& link,
                                              const DriverContext& context) const override;
+  std::string Owned(const std::string& link) const override;
   void CountLink(const ForceTorqueSensor& device, Json& counts) const override;
 };
 

@@ -26,6 +26,9 @@ constexpr double kConnect_s = 8.0;
 constexpr auto kAskAgain = std::chrono::milliseconds(500);
 /// Counts of two configurations are the same when they differ by less: pages print few digits.
 constexpr double kSameCounts = 1e-4;
+/// Noise changes the counts of a working sensor a thousand times per second.
+constexpr TimeNs kStuck = std::chrono::milliseconds(100);
+constexpr int kStuckRecords = 5;
 
 std::chrono::nanoseconds Patience(double s, double rate) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * s * std::max(1.0, 1.0 / rate)));
@@ -130,6 +133,15 @@ struct NetftSensor::Impl {
       return;
     }
     ++seen.samples;
+    if (seen.samples == 1 || record.counts != same_counts) {
+      same_counts = record.counts;
+      same_since = now;
+      same = 0;
+    }
+    const bool stuck = ++same >= kStuckRecords && now - same_since >= kStuck;
+    newest.problem = stuck ? "the same counts for " + Number(Seconds(now - same_since)) +
+                                 " s: the sensor is stuck, or somebody repeats what it said"
+                           : "";
     newest.time = now;
     newest.wrench_K = scale.WrenchOf(record.counts);
     newest.saturated = (record.status & kRdtSaturation) != 0;
@@ -163,7 +175,10 @@ struct NetftSensor::Impl {
 
   std::mutex mutex;  ///< Of all below but the thread.
   std::condition_variable came;
-  bool first = true;  ///< Somebody waits for the first sample.
+  bool first = true;                          ///< Somebody waits for the first sample.
+  std::array<std::int32_t, 6> same_counts{};  ///< Of the newest record,
+  TimeNs same_since{0};                       ///< since when,
+  int same = 0;                               ///< and in how many.
   std::optional<RdtRecord> last;
   Statistics seen;
   WrenchSample newest;

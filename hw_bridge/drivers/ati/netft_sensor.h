@@ -14,8 +14,9 @@ namespace tubetwin {
 ///
 /// Read() is the newest record in sensor axes, not tared, with the time at which it came. A record
 /// with a fault in its status word is no sample, and neither is one that is late, damaged or
-/// missing: the newest sample then gets old, which the cell's watch over the wrist sees. The driver
-/// does not ask for a stream again.
+/// missing: the newest sample then gets old, which the cell's watch over the wrist sees. No sensor
+/// counts the same on all axes for long: after 0.1 s of it the samples' `problem` says that it is
+/// stuck, until it counts something else. The driver does not ask for a stream again.
 class NetftSensor : public ForceTorqueSensor {
  public:
   /// Reads the box's configuration page, starts the stream and waits for its first sample, at most

@@ -25,7 +25,7 @@ using WallClock = std::chrono::steady_clock;
 using Kind = ScanFileName::Kind;
 
 constexpr auto kPoll = std::chrono::milliseconds(10);
-constexpr auto kQuiet = std::chrono::milliseconds(200);     // Before an operator's file is read.
+constexpr auto kQuiet = std::chrono::milliseconds(200);     // Before a file that may grow is read.
 constexpr auto kSettled = std::chrono::milliseconds(1000);  // Nobody is writing it any more.
 
 /// Tells whether a file is still the one that was looked at.
@@ -39,6 +39,9 @@ struct Stamp {
 struct Entry {
   ScanFileName name;
   Stamp stamp;
+  /// It got its name after it was written, and so at once: it does not grow. Files that are written
+  /// in their place may, with their whole size from the start, too.
+  bool renamed = false;
 };
 using Listing = std::map<std::string, Entry>;  ///< By file name.
 
@@ -103,9 +106,12 @@ class FolderLink {
       struct stat status = {};
       // Gone since it was listed, or a folder: not there.
       if (::stat(Path(name).c_str(), &status) != 0 || !S_ISREG(status.st_mode)) continue;
-      const std::int64_t changed_ns =
-          status.st_mtim.tv_sec * std::int64_t{1000000000} + status.st_mtim.tv_nsec;
-      listing[name] = {parsed, {status.st_ino, status.st_size, changed_ns}};
+      const auto ns = [](const timespec& time) {
+        return time.tv_sec * std::int64_t{1000000000} + time.tv_nsec;
+      };
+      listing[name] = {parsed,
+                       {status.st_ino, status.st_size, ns(status.st_mtim)},
+                       ns(status.st_ctim) > ns(status.st_mtim)};
     }
     if (code) throw Error(ErrorKind::kDevice, Who() + "cannot be read: " + code.message());
     return listing;
@@ -153,7 +159,8 @@ class FolderLink {
     }
     const auto quiet = WallClock::now() - candidate.since;
     if (candidate.problem.empty()) {
-      if (entry.name.kind == Kind::kSaved && quiet < kQuiet) return std::nullopt;
+      const bool may_grow = entry.name.kind == Kind::kSaved || !entry.renamed;
+      if (may_grow && quiet < kQuiet) return std::nullopt;
       try {
         OrganizedCloud cloud = ReadCloud(Path(name));
         const Listing after = List();

@@ -1,5 +1,7 @@
 #include "hw_bridge/drivers/photoneo/photoneo_driver.h"
 
+#include <filesystem>
+
 namespace tubetwin {
 
 std::unique_ptr<DeviceDriver<Scanner>> PhotoneoDriver::Clone() const {
@@ -32,6 +34,10 @@ std::unique_ptr<Scanner> PhotoneoDriver::Connect(const std::string& link,
   used.driver = link;
   used.rate = context.rate;
   return ConnectScanner(used, context.believed_X_NS);
+}
+
+std::string PhotoneoDriver::Owned(const std::string& link) const {
+  return link == "gige" ? config.host : std::filesystem::weakly_canonical(config.path).string();
 }
 
 }  // namespace tubetwin

@@ -17,6 +17,7 @@ class PhotoneoDriver : public DeviceDriver<Scanner> {
   void ValidateOrThrow(const std::string& link) const override;
   std::unique_ptr<Scanner> Connect(const std::string& link,
                                    const DriverContext& context) const override;
+  std::string Owned(const std::string& link) const override;
 };
 
 }  // namespace tubetwin

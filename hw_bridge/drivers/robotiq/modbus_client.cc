@@ -35,7 +35,8 @@ struct ModbusClient::Line {
   bool connected = false;
 };
 
-ModbusClient::ModbusClient(const RobotiqConfig& config, std::chrono::nanoseconds limit) {
+ModbusClient::ModbusClient(const RobotiqConfig& config, std::chrono::nanoseconds limit)
+    : action_start_(config.action_start), status_start_(config.status_start) {
   const bool rtu = config.transport == "rtu";
   modbus_t* made =
       rtu ? modbus_new_rtu(config.device.c_str(), 115200, 'N', 8, 1)
@@ -64,15 +65,14 @@ void ModbusClient::SetAnswerLimit(std::chrono::nanoseconds limit) {
 ModbusClient::Result ModbusClient::Write(const GripperRegisters& words) {
   modbus_flush(line_->modbus);  // Answers that came too late or twice.
   const int count = static_cast<int>(words.size());
-  return Judge(modbus_write_registers(line_->modbus, kGripperActionStart, count, words.data()) ==
-               count);
+  return Judge(modbus_write_registers(line_->modbus, action_start_, count, words.data()) == count);
 }
 
 ModbusClient::Result ModbusClient::Read(GripperRegisters& words) {
   modbus_flush(line_->modbus);
   const int count = static_cast<int>(words.size());
   const auto read = by_input_registers_ ? modbus_read_input_registers : modbus_read_registers;
-  const bool done = read(line_->modbus, kGripperStatusStart, count, words.data()) == count;
+  const bool done = read(line_->modbus, status_start_, count, words.data()) == count;
   if (!done && errno == EMBXILFUN) by_input_registers_ = !by_input_registers_;
   return Judge(done);
 }

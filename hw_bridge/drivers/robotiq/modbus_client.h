@@ -37,6 +37,7 @@ class ModbusClient {
   Result Judge(bool done);
   struct Line;
   std::unique_ptr<Line> line_;
+  int action_start_, status_start_;
   bool by_input_registers_ = false;
   std::string problem_;
 };

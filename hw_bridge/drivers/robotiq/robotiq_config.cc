@@ -10,6 +10,10 @@ void RobotiqConfig::Visit(ConfigVisitor& v) {
   v.Field("port", "modbus_tcp: port", port, {1, 65535});
   v.Field("device", "modbus_rtu: serial device", device);
   v.Field("slave", "Modbus address", slave, {1, 247});
+  v.Field("action_start", "first register to write; 0 behind Robotiq's own TCP unit", action_start,
+          {0, 65533});
+  v.Field("status_start", "first register to read; 0 behind Robotiq's own TCP unit", status_start,
+          {0, 65533});
 }
 
 void RobotiqConfig::ValidateOrThrow() const {

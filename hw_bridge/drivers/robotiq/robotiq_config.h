@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "hw_bridge/codecs/robotiq_registers.h"
@@ -15,11 +16,16 @@ struct RobotiqConfig {
   int port = 1502;                      ///< tcp.
   std::string device = "/dev/ttyUSB0";  ///< rtu: serial device, 115200 baud 8N1.
   int slave = 9;
+  /// First registers to write and to read. The gripper's own; gateways may map them elsewhere.
+  int action_start = kGripperActionStart, status_start = kGripperStatusStart;
   /// Cell time per wall time: of the whole cell, so the cell file's own key and not visited here.
   double rate = 1.0;
   /// Activate the gripper when it is not: its fingers then open and close. Not visited: doctor, who
   /// moves nothing, goes without.
   bool activate = true;
+  /// Asked before an activation whose motion could drop what the fingers hold: true is a person's
+  /// word that it may. Empty: nobody is there. Not visited.
+  std::function<bool(const std::string& what)> confirm;
 
   /// Figures of the cell's gripper. Not visited.
   GripperScale scale;

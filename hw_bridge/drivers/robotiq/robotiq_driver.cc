@@ -1,5 +1,7 @@
 #include "hw_bridge/drivers/robotiq/robotiq_driver.h"
 
+#include <filesystem>
+
 #include "hw_bridge/drivers/robotiq/robotiq_gripper.h"
 #include "models/base/json.h"
 
@@ -46,7 +48,13 @@ std::unique_ptr<Gripper> RobotiqDriver::Connect(const std::string& link,
   used.rate = context.rate;
   used.scale = ScaleOf(context.model.gripper);
   used.activate = context.may_move;
+  used.confirm = context.confirm;
   return std::make_unique<RobotiqGripper>(used, context.clock);
+}
+
+std::string RobotiqDriver::Owned(const std::string& link) const {
+  return link == kRtu ? std::filesystem::weakly_canonical(config.device).string()
+                      : config.host + ":" + std::to_string(config.port);
 }
 
 void RobotiqDriver::CountLink(const Gripper& device, Json& counts) const {

@@ -19,6 +19,7 @@ class RobotiqDriver : public DeviceDriver<Gripper> {
   void Visit(ConfigVisitor& v) override;
   std::unique_ptr<Gripper> Connect(const std::string& link,
                                    const DriverContext& context) const override;
+  std::string Owned(const std::string& link) const override;
   void CountLink(const Gripper& device, Json& counts) const override;
 };
 

@@ -22,6 +22,12 @@ constexpr double kSilence_s = 1.0;
 /// After a request that changes nothing the gripper never says that it moves.
 constexpr double kGrace_s = 0.1, kShortestGrace_s = 0.04;
 constexpr int kFirstMajorFault = 0x0A;
+/// How long a gripper may tell of the request before the newest.
+constexpr double kEcho_s = 0.3, kShortestEcho_s = 0.1;
+/// Statuses that tell of somebody else's request: one may be an answer that came late.
+constexpr int kForeignStatuses = 2;
+/// Fingers this near to closed hold nothing, this near to wide open neither.
+constexpr double kClosed_m = 0.004, kWide_m = 0.003;
 
 std::chrono::nanoseconds Wait(double s) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(s * 1e9));
@@ -73,8 +79,10 @@ void RobotiqGripper::Connect() {
   const bool ready = status.activate && status.activation == GripperActivation::kDone &&
                      status.fault < kFirstMajorFault;
   if (!ready && config_.activate) {
-    Activate(deadline);
-    status = AwaitStatus(deadline);
+    RequireEmptyFingers(status);
+    const auto from_here = Wall::now() + limit;
+    Activate(from_here);
+    status = AwaitStatus(from_here);
   }
   Take(status);
   heard_ = Wall::now();
@@ -96,6 +104,21 @@ GripperStatus RobotiqGripper::AwaitStatus(Wall::time_point deadline) {
     }
     std::this_thread::sleep_for(Wait(kPoll_s));
   }
+}
+
+void RobotiqGripper::RequireEmptyFingers(const GripperStatus& status) const {
+  const double opening_m = config_.scale.OpeningOf(status.position);
+  if (opening_m < kClosed_m || opening_m > config_.scale.stroke_m - kWide_m) return;
+  char opening[32];
+  std::snprintf(opening, sizeof opening, "%.1f mm", 1e3 * opening_m);
+  const std::string what = config_.Name() + ": needs activation (" + StatusText(status) +
+                           "), which opens and closes its fingers; they stand " + opening +
+                           " apart and may hold something";
+  if (config_.confirm && config_.confirm(what + ": take it out first")) return;
+  throw Error(ErrorKind::kDevice,
+              what +
+                  "\ntake it out and close the fingers by the maker's own program, or run at a "
+                  "terminal and say so when asked");
 }
 
 void RobotiqGripper::Activate(Wall::time_point deadline) {
@@ -169,7 +192,10 @@ bool RobotiqGripper::Exchange() {
   std::optional<GripperAction> action;
   {
     const std::lock_guard lock(mutex_);
-    if (pending_) action = action_;
+    if (pending_) {
+      action = action_;
+      sent_ = Request{action_.go_to, action_.position};
+    }
     fresh_ = false;
   }
   if (action) {
@@ -221,6 +247,7 @@ void RobotiqGripper::Take(const GripperStatus& status) {
   state_.activated = status.activate && status.activation == GripperActivation::kDone;
   state_.opening_m = config_.scale.OpeningOf(status.position);
   state_.fault = status.fault;
+  if (state_.activated) JudgeRequest(status);
   if (!ever_) {
     state_.requested_m =
         status.go_to ? config_.scale.OpeningOf(status.position_request) : state_.opening_m;
@@ -234,6 +261,28 @@ void RobotiqGripper::Take(const GripperStatus& status) {
     unsettled_ = false;
   }
   state_.object = ObjectOf(status.motion);
+}
+
+// With the lock. A gripper that is not activated says so itself.
+void RobotiqGripper::JudgeRequest(const GripperStatus& status) {
+  const Request said{status.go_to, status.position_request};
+  const auto echo = Wait(std::max(kShortestEcho_s, kEcho_s / config_.rate));
+  const bool may_be_old = !sent_ || pending_ || Wall::now() - written_ < echo;
+  if (!told_ || said == sent_) told_ = said;
+  if (said == sent_ || (may_be_old && said == told_)) {
+    foreign_ = 0;
+    return;
+  }
+  if (++foreign_ < kForeignStatuses || !state_.problem.empty()) return;
+  const auto text = [this](const Request& request) -> std::string {
+    if (!request.go_to) return "nowhere";
+    char opening[32];
+    std::snprintf(opening, sizeof opening, "to %.1f mm",
+                  1e3 * config_.scale.OpeningOf(request.position));
+    return opening;
+  };
+  state_.problem = "another client commands the gripper: it was told to go " + text(said) +
+                   ", by this program " + (sent_ ? text(*sent_) : "nowhere");
 }
 
 void RobotiqGripper::Lose(const std::string& problem) {

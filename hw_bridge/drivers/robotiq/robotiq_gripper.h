@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -21,14 +22,18 @@ class ModbusClient;
 /// commanded: faults and the destructor leave the fingers as they are.
 ///
 /// State().time is when the newest status came. A request is kMoving until the gripper has told
-/// otherwise for this very request. A link that is closed, or silent for 1 s, is lost for good:
-/// State() keeps the last status with fault 0x09, commands go nowhere.
+/// otherwise for this very request. A gripper that follows a request which is not this driver's is
+/// somebody else's: State().problem says so from then on, for good. A link that is closed, or
+/// silent for 1 s, is lost for good: State() keeps the last status with fault 0x09, commands go
+/// nowhere.
 class RobotiqGripper : public Gripper {
  public:
   /// Connects and, where the gripper is not activated or in a major fault, activates it: the
-  /// fingers open and close. At most 8 s (of cell time where that is slower than the wall's).
-  /// `clock` must outlive it and tell Now() to any thread. Throws Error(kConfig), and
-  /// Error(kDevice) naming device, place and what was awaited.
+  /// fingers open and close. Fingers that are neither closed nor wide open may hold something: that
+  /// needs a person's word (config.confirm). At most 8 s (of cell time where that is slower than
+  /// the wall's) besides the time that a person takes. `clock` must outlive it and tell Now() to
+  /// any thread. Throws Error(kConfig), and Error(kDevice) naming device, place and what was
+  /// awaited.
   RobotiqGripper(const RobotiqConfig& config, const CellClock& clock);
   ~RobotiqGripper() override;
 
@@ -43,6 +48,7 @@ class RobotiqGripper : public Gripper {
 
  private:
   void Connect();
+  void RequireEmptyFingers(const GripperStatus& status) const;
   void Activate(std::chrono::steady_clock::time_point deadline);
   GripperStatus AwaitStatus(std::chrono::steady_clock::time_point deadline);
   void Serve(const std::stop_token& stop);
@@ -50,10 +56,17 @@ class RobotiqGripper : public Gripper {
   bool Exchange();
   bool Heard(bool answered, bool lost);
   void Take(const GripperStatus& status);
+  void JudgeRequest(const GripperStatus& status);
   void Lose(const std::string& problem);
 
   RobotiqConfig config_;
   const CellClock& clock_;
+  /// What the gripper says that it was told.
+  struct Request {
+    bool go_to = false;
+    std::uint8_t position = 0;
+    bool operator==(const Request&) const = default;
+  };
   std::unique_ptr<ModbusClient> client_;                   ///< Of the thread, once it runs.
   std::chrono::steady_clock::time_point heard_, written_;  ///< Of the thread.
 
@@ -65,6 +78,9 @@ class RobotiqGripper : public Gripper {
   bool unsettled_ = false;  ///< The gripper has not told of it.
   bool ever_ = false;       ///< There was one.
   GripperState state_;
+  std::optional<Request> sent_;  ///< Newest that was written, or may have been.
+  std::optional<Request> told_;  ///< Newest that the gripper told and should have.
+  int foreign_ = 0;              ///< Statuses in a row that tell of another.
   std::string lost_;
   int unanswered_ = 0;
 

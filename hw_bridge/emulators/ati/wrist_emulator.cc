@@ -1,11 +1,13 @@
 #include "hw_bridge/emulators/ati/wrist_emulator.h"
 
+#include <algorithm>
 #include <array>
 #include <asio.hpp>
 #include <cmath>
 #include <utility>
 
 #include "models/base/error.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace {
@@ -17,6 +19,7 @@ constexpr int kMaxRequests = 64;  // Per control period.
 constexpr std::uint64_t kMaxRecords = 1000;
 constexpr double kSensorRate_Hz = 7000.0;  // Of the box's own count of samples.
 constexpr std::size_t kLongestRequest = 4096;
+constexpr int kConfigurations = 16;
 
 std::string HttpAnswer(const char* status, const char* type, const std::string& body) {
   return std::string("HTTP/1.0 ") + status + "\r\nContent-Type: " + type +
@@ -150,14 +153,40 @@ std::uint32_t WristEmulator::Status(const WrenchSample& sample) const {
   return bits == 0 ? 0 : bits | kRdtErrorSummary;
 }
 
-std::string WristEmulator::Page() const {
+NetftPage WristEmulator::Page() const {
   NetftPage page;
   page.product = "Net F/T";
   page.counts_per_force = config_.counts_per_N;
   page.counts_per_torque = config_.counts_per_Nm;
   page.rate_Hz = config_.rate_Hz;
   page.status = Status(sensor_.Read());
-  return EncodeNetftPage(page);
+  page.torque_unit = "Nm";
+  page.configuration = "tubetwin";
+  page.serial = "FT00000";
+  for (const double range : config_.range) {
+    page.ratings += (page.ratings.empty() ? "" : ";") + Number(range);
+  }
+  return page;
+}
+
+std::string WristEmulator::HttpAnswerTo(const std::string& request) const {
+  if (!request.starts_with("GET ")) {
+    return HttpAnswer("405 Method Not Allowed", "text/plain", "GET is allowed\n");
+  }
+  const std::string target = request.substr(4, request.find_first_of(" \r\n", 4) - 4);
+  const std::size_t query = std::min(target.find('?'), target.size());
+  const std::string page = target.substr(0, query), index = target.substr(query);
+  // One of the box's sixteen configurations and calibrations; they are all alike.
+  bool known = index.empty();
+  for (int i = 0; i < kConfigurations; ++i) known = known || index == "?index=" + std::to_string(i);
+  if (known && page == "/netftapi2.xml") {
+    return HttpAnswer("200 OK", "text/xml", EncodeNetftPage(Page()));
+  }
+  if (known && page == "/netftcalapi.xml") {
+    return HttpAnswer("200 OK", "text/xml", EncodeNetftCalibrationPage(Page()));
+  }
+  return HttpAnswer("404 Not Found", "text/plain",
+                    "there are /netftapi2.xml and /netftcalapi.xml, with ?index=0 to 15\n");
 }
 
 void WristEmulator::ServePage(TimeNs now) {
@@ -169,13 +198,7 @@ void WristEmulator::ServePage(TimeNs now) {
     if (received.find("\r\n\r\n") == std::string::npos) {
       return received.size() > kLongestRequest ? TcpPort::Verdict::kClose : TcpPort::Verdict::kKeep;
     }
-    std::string answer = HttpAnswer("404 Not Found", "text/plain", "there is /netftapi2.xml\n");
-    if (received.starts_with("GET /netftapi2.xml ")) {
-      answer = HttpAnswer("200 OK", "text/xml", Page());
-    } else if (!received.starts_with("GET ")) {
-      answer = HttpAnswer("405 Method Not Allowed", "text/plain", "GET is allowed\n");
-    }
-    http_.Send(client, answer);
+    http_.Send(client, HttpAnswerTo(received));
     return TcpPort::Verdict::kClose;
   });
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -19,14 +20,15 @@ struct WristEmulatorConfig {
   int port = 49152;      ///< UDP, raw data transfer; 0: any free port.
   int http_port = 8049;  ///< TCP, configuration page; 0: any free port.
   double counts_per_N = 1e6, counts_per_Nm = 1e6;
-  double rate_Hz = 1000;   ///< Records per second of cell time, 1 to 7000.
-  double threshold_N = 0;  ///< A larger force latches the threshold bit; 0: none does.
+  double rate_Hz = 1000;          ///< Records per second of cell time, 1 to 7000.
+  double threshold_N = 0;         ///< A larger force latches the threshold bit; 0: none does.
+  std::array<double, 6> range{};  ///< Largest readings, N and N m, for its pages.
 };
 
 /// An ATI Net F/T box with the readings of any ForceTorqueSensor: raw data transfer over UDP
-/// (commands 0, 2, 3, 0x41, 0x42; others are ignored) and /netftapi2.xml over HTTP. It streams to
-/// one client, the last that asked. Everything happens in Tick(); records of one period carry the
-/// same reading.
+/// (commands 0, 2, 3, 0x41, 0x42; others are ignored) and the pages /netftapi2.xml and
+/// /netftcalapi.xml over HTTP, with or without ?index=0 to 15. It streams to one client, the last
+/// that asked. Everything happens in Tick(); records of one period carry the same reading.
 class WristEmulator : public Emulator {
  public:
   /// `sensor` and `io` must outlive it. Throws Error(kDevice) when a port cannot be had.
@@ -57,7 +59,8 @@ class WristEmulator : public Emulator {
   void Stream(TimeNs now);
   void SendPending(TimeNs now);
   void ServePage(TimeNs now);
-  std::string Page() const;
+  NetftPage Page() const;
+  std::string HttpAnswerTo(const std::string& request) const;
   std::uint32_t Status(const WrenchSample& sample) const;
 
   ForceTorqueSensor& sensor_;

@@ -1,6 +1,8 @@
 #include "hw_bridge/emulators/robotiq/gripper_controller.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "models/base/error.h"
 
@@ -13,35 +15,44 @@ constexpr double kActivationSpeed_m_s = 0.10, kActivationForce_N = 40.0;
 /// The motor of moving fingers, 10 mA each: what the force lets it draw.
 constexpr int kIdleCurrent = 5, kFullCurrent = 25;
 
+/// Clients read and write more registers than have a meaning: the ROS 2 driver reads six.
+constexpr int kRegisters = 16;
+/// Fingers on their way that stand so long press on something.
+constexpr TimeNs kPressing = std::chrono::milliseconds(20);
+
 bool IsWithin(int start, int count, int first) {
-  return start >= first && start + count <= first + 3;
+  return start >= first && start + count <= first + kRegisters;
 }
 
 }  // namespace
 
 bool GripperController::IsWritable(int start, int count) const {
-  return IsWithin(start, count, kGripperActionStart);
+  return IsWithin(start, count, action_start_);
 }
 
 bool GripperController::IsReadable(int start, int count) const {
-  return IsWithin(start, count, kGripperStatusStart) || IsWithin(start, count, kGripperActionStart);
+  return IsWithin(start, count, status_start_) || IsWithin(start, count, action_start_);
 }
 
 std::vector<std::uint16_t> GripperController::Read(int start, int count) {
   TT_CHECK(IsReadable(start, count));
-  const bool status = start >= kGripperStatusStart;
-  const GripperRegisters words =
+  const bool status = IsWithin(start, count, status_start_);
+  const GripperRegisters known =
       status ? EncodeGripperStatus(Status()) : EncodeGripperAction(action_);
   if (status) silence_told_ = silent_;
-  const auto* from = words.data() + (start - (status ? kGripperStatusStart : kGripperActionStart));
+  std::array<std::uint16_t, kRegisters> words{};
+  std::copy(known.begin(), known.end(), words.begin());
+  const auto* from = words.data() + (start - (status ? status_start_ : action_start_));
   return {from, from + count};
 }
 
 void GripperController::Write(int start, const std::vector<std::uint16_t>& values) {
   TT_CHECK(IsWritable(start, static_cast<int>(values.size())));
-  GripperRegisters words = EncodeGripperAction(action_);
-  std::copy(values.begin(), values.end(), words.begin() + (start - kGripperActionStart));
-  Take(DecodeGripperAction(words));
+  const GripperRegisters known = EncodeGripperAction(action_);
+  std::array<std::uint16_t, kRegisters> words{};
+  std::copy(known.begin(), known.end(), words.begin());
+  std::copy(values.begin(), values.end(), words.begin() + (start - action_start_));
+  Take(DecodeGripperAction({words[0], words[1], words[2]}));
 }
 
 void GripperController::Heard(TimeNs now) {
@@ -96,7 +107,9 @@ void GripperController::Move(double opening_m, double speed_m_s, double force_N)
 
 void GripperController::Halt() {
   const GripperState state = gripper_.State();
-  if (state.object != GripperObject::kMoving || state.requested_m <= state.opening_m) return;
+  if (state.object != GripperObject::kMoving) return;
+  const bool closing = state.requested_m < state.opening_m;
+  if (closing && now_ - still_since_ > kPressing) return;
   Move(state.opening_m, scale_.min_speed_m_s, scale_.ForceFrom(action_.force));
 }
 
@@ -111,6 +124,9 @@ void GripperController::NextStepOfActivation() {
 }
 
 void GripperController::Tick(TimeNs now) {
+  now_ = now;
+  const double opening_m = gripper_.State().opening_m;
+  if (opening_m != std::exchange(opening_m_, opening_m)) still_since_ = now;
   if (now - heard_ > kSilence) silent_ = true;
   if (raised_ >= kFirstMajorFault) return;
   if (gripper_.State().object == GripperObject::kMoving) return;

@@ -10,15 +10,22 @@
 namespace tubetwin {
 
 /// The controller of a Robotiq 2F gripper: reads commands from its registers, moves the fingers of
-/// any Gripper, writes states. Activation opens, closes and opens the fingers. No fault opens them:
-/// fingers that move outwards stop, fingers that press keep pressing.
+/// any Gripper, writes states. Activation opens, closes and opens the fingers. Without rACT or
+/// rGTO, and in a major fault, moving fingers stop where they are; fingers that press keep
+/// pressing.
 class GripperController : public ModbusRegisters {
  public:
   /// `gripper` must outlive it.
-  GripperController(Gripper& gripper, const GripperScale& scale)
-      : gripper_(gripper), scale_(scale) {}
+  GripperController(Gripper& gripper, const GripperScale& scale,
+                    int action_start = kGripperActionStart, int status_start = kGripperStatusStart)
+      : gripper_(gripper),
+        scale_(scale),
+        action_start_(action_start),
+        status_start_(status_start) {}
 
-  // Of a client: three registers from 0x03E8 to write and read, three from 0x07D0 to read.
+  // Of a client: 16 registers from `status_start` to read and as many from `action_start` to write
+  // and read, of which the first three mean something, the others are 0. Where the two overlap,
+  // reading reads the status.
   bool IsReadable(int start, int count) const override;
   bool IsWritable(int start, int count) const override;
   std::vector<std::uint16_t> Read(int start, int count) override;
@@ -51,6 +58,7 @@ class GripperController : public ModbusRegisters {
 
   Gripper& gripper_;
   GripperScale scale_;
+  int action_start_, status_start_;
   GripperAction action_;
   Phase phase_ = Phase::kReset;
   int step_ = 0;           ///< Of the activation.
@@ -60,6 +68,8 @@ class GripperController : public ModbusRegisters {
   int raised_ = 0;
   bool silent_ = false, silence_told_ = false;
   TimeNs heard_{0};
+  double opening_m_ = 0.0;  ///< Of the fingers, and since when they stand so.
+  TimeNs now_{0}, still_since_{0};
 };
 
 }  // namespace tubetwin

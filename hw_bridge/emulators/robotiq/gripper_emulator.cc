@@ -16,7 +16,7 @@ constexpr TimeNs kEndOfFrame = std::chrono::milliseconds(50);
 
 GripperEmulator::GripperEmulator(asio::io_context& io, Gripper& gripper,
                                  const GripperEmulatorConfig& config)
-    : controller_(gripper, config.scale),
+    : controller_(gripper, config.scale, config.action_start, config.status_start),
       slave_(
           config.transport == "rtu" ? ModbusSlave::Transport::kRtu : ModbusSlave::Transport::kTcp,
           config.slave) {

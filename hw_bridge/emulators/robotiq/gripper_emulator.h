@@ -20,6 +20,7 @@ struct GripperEmulatorConfig {
   int port = 1502;     ///< tcp; 0: any free port.
   std::string device;  ///< rtu: link to the pseudo-terminal that is made; empty: no link.
   int slave = 9;
+  int action_start = kGripperActionStart, status_start = kGripperStatusStart;
   GripperScale scale;  ///< What its registers mean.
 };
 
