@@ -16,8 +16,8 @@ namespace tubetwin {
 
 /// A listening TCP port that is polled once per control period and never blocks. It holds 8
 /// connections; for one more, the one that has gone longest without a whole message (at least 1 s,
-/// whatever trickles in) is closed, or else the new one. A client that sends too many bytes without a whole message, or does not read
-/// what is sent to it, is disconnected.
+/// whatever trickles in) is closed, or else the new one. A client that sends too many bytes without
+/// a whole message, or does not read what is sent to it, is disconnected.
 class TcpPort {
  public:
   /// `port` 0: any free one. Throws Error(kDevice) naming `who` (device), address and reason when

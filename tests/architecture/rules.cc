@@ -106,6 +106,7 @@ const std::vector<ThirdParty>& ThirdParties() {
       {"modbus/", kSockets, true},
       {"arv", kSockets, true},
       {"sys/socket.h", kSockets, true},
+      {"sys/un.h", kSockets, true},
       {"netinet/", kSockets, true},
       {"arpa/", kSockets, true},
       {"netdb.h", kSockets, true},
