@@ -13,24 +13,10 @@ namespace {
 constexpr double kCeiling_m = 0.25, kOverWalls_m = 0.1;
 /// Noise, calibration and the rim's edge move a point by less.
 constexpr double kFloorSlack_m = 0.004, kThrough_m = 0.012;
+/// Scanners see no further to the side than this, over the depth.
+constexpr float kWidest = 2.0f;
 /// Share of the points that mirror images and flying pixels may be.
 constexpr double kStrays = 0.05;
-
-/// Whether the line of sight from `eye_N` to `p_N` passes through one of the four walls.
-bool ThroughWall(const Vector3& eye_N, const Vector3& p_N, const Bin& bin) {
-  const double half[2] = {bin.half_x_m(), bin.half_y_m()};
-  for (int axis = 0; axis < 2; ++axis) {
-    for (const double sign : {-1.0, 1.0}) {
-      const double eye_out = sign * eye_N[axis] - half[axis], out = sign * p_N[axis] - half[axis];
-      if (std::abs(out) < kThrough_m || (eye_out > 0) == (out > 0)) continue;
-      const double share = eye_out / (eye_out - out);
-      const Vector3 at = eye_N + share * (p_N - eye_N);
-      const bool beside = std::abs(at[1 - axis]) > half[1 - axis] - kThrough_m;
-      if (!beside && at.z() > kThrough_m && at.z() < bin.wall_m() - kThrough_m) return true;
-    }
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -47,16 +33,30 @@ bool SeenFromOrigin(const std::vector<Eigen::Vector3f>& points_S) {
   for (const auto& p : points_S) {
     if (!IsValid(p)) continue;
     ++valid;
-    before += p.z() >= kNearest_m;
+    before += p.z() >= kNearest_m && std::max(std::abs(p.x()), std::abs(p.y())) < kWidest * p.z();
   }
   return valid > 0 && (valid - before) * 100 <= valid;
 }
 
-LineOfSight JudgeLineOfSight(const Vector3& eye_N, const Vector3& p_N, const Bin& bin) {
-  const double out_m =
-      std::max(std::abs(p_N.x()) - bin.half_x_m(), std::abs(p_N.y()) - bin.half_y_m());
-  if (p_N.z() < -kThrough_m && out_m < -kThrough_m) return LineOfSight::kThroughFloor;
-  return ThroughWall(eye_N, p_N, bin) ? LineOfSight::kThroughWall : LineOfSight::kFree;
+std::optional<WallCrossing> CrossedWall(const Vector3& eye_N, const Vector3& p_N, const Bin& bin) {
+  const double half[2] = {bin.half_x_m(), bin.half_y_m()};
+  for (int side = 0; side < 4; ++side) {
+    const int axis = side / 2;
+    const double sign = side % 2 == 0 ? -1.0 : 1.0;
+    const double eye_out = sign * eye_N[axis] - half[axis], out = sign * p_N[axis] - half[axis];
+    if (std::abs(out) < kThrough_m || (eye_out > 0) == (out > 0)) continue;
+    const Vector3 at = eye_N + eye_out / (eye_out - out) * (p_N - eye_N);
+    const bool beside = std::abs(at[1 - axis]) > half[1 - axis] - kThrough_m;
+    if (!beside && at.z() > kThrough_m && at.z() < bin.wall_m() - kThrough_m) {
+      return WallCrossing{side, at[1 - axis]};
+    }
+  }
+  return std::nullopt;
+}
+
+bool IsBelowFloor(const Vector3& p_N, const Bin& bin) {
+  return p_N.z() < -kThrough_m && std::abs(p_N.x()) < bin.half_x_m() - kThrough_m &&
+         std::abs(p_N.y()) < bin.half_y_m() - kThrough_m;
 }
 
 BinEvidence CompareWithBin(const std::vector<Eigen::Vector3f>& points_S, const RigidTransform& X_NS,
@@ -74,9 +74,11 @@ BinEvidence CompareWithBin(const std::vector<Eigen::Vector3f>& points_S, const R
         std::max(std::abs(p_N.x()) - bin.half_x_m(), std::abs(p_N.y()) - bin.half_y_m());
     out.inside += out_m < t && p_N.z() > -kFloorSlack_m && p_N.z() < high;
     if (!seen_from_S) continue;
-    const LineOfSight sight = JudgeLineOfSight(eye_N, p_N, bin);
-    out.through_floor += sight == LineOfSight::kThroughFloor;
-    out.through_walls += sight == LineOfSight::kThroughWall;
+    if (IsBelowFloor(p_N, bin)) {
+      ++out.through_floor;
+    } else {
+      out.through_walls += CrossedWall(eye_N, p_N, bin).has_value();
+    }
   }
   return out;
 }

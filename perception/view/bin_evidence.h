@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,13 +20,19 @@ struct BinEvidence {
   BinEvidence& operator+=(const BinEvidence& other);
 };
 
-/// Whether S can be where the points were seen from: they lie in front of it, as MakeViewRaster
-/// asks.
+/// Whether S can be where the points were seen from: they lie in front of it, as a scanner sees.
 bool SeenFromOrigin(const std::vector<Eigen::Vector3f>& points_S);
 
-/// Whether a point seen from `eye_N` could be seen there with the bin in place.
-enum class LineOfSight { kFree, kThroughFloor, kThroughWall };
-LineOfSight JudgeLineOfSight(const Vector3& eye_N, const Vector3& p_N, const Bin& bin);
+/// Where a line of sight passes through a wall.
+struct WallCrossing {
+  int side = 0;          ///< 0: -x, 1: +x, 2: -y, 3: +y of N.
+  double along_m = 0.0;  ///< The other coordinate there.
+};
+/// The wall between `eye_N` and the point seen, if any.
+std::optional<WallCrossing> CrossedWall(const Vector3& eye_N, const Vector3& p_N, const Bin& bin);
+
+/// Whether a point lies below the floor, so that the floor would hide it.
+bool IsBelowFloor(const Vector3& p_N, const Bin& bin);
 
 /// Compares the points with the bin at the pose `X_NS`.
 BinEvidence CompareWithBin(const std::vector<Eigen::Vector3f>& points_S, const RigidTransform& X_NS,

@@ -51,19 +51,23 @@ TEST_CASE("What floor and walls would hide is counted and told", "[unit]") {
 
 TEST_CASE("A line of sight ends at walls from both sides, and passes over the rim", "[unit]") {
   const Bin bin;  // 0.77 x 0.58 x 0.09 m.
-  const auto judge = [&bin](const Vector3& eye, const Vector3& p) {
-    return JudgeLineOfSight(eye, p, bin);
-  };
   const Vector3 eye(0, 0, 0.5);
-  CHECK(judge(eye, {0.1, 0.1, 0.0}) == LineOfSight::kFree);
-  CHECK(judge(eye, {0.1, 0.1, -0.02}) == LineOfSight::kThroughFloor);
-  CHECK(judge(eye, {0.44, 0, 0}) == LineOfSight::kThroughWall);
-  CHECK(judge(eye, {0, -0.33, 0}) == LineOfSight::kThroughWall);
-  CHECK(judge(eye, {0.395, 0, 0.09}) == LineOfSight::kFree);  // On the rim.
-  CHECK(judge(eye, {0.9, 0, 0.0}) == LineOfSight::kFree);     // Over it, to the table.
+  CHECK_FALSE(IsBelowFloor({0.1, 0.1, 0.0}, bin));
+  CHECK(IsBelowFloor({0.1, 0.1, -0.02}, bin));
+  CHECK_FALSE(IsBelowFloor({0.5, 0.1, -0.02}, bin));  // Beside the bin.
+  const auto crossed = [&](const Vector3& from, const Vector3& p) {
+    const auto crossing = CrossedWall(from, p, bin);
+    return crossing ? crossing->side : -1;
+  };
+  CHECK(crossed(eye, {0.1, 0.1, 0.0}) == -1);
+  CHECK(crossed(eye, {0.44, 0, 0}) == 1);
+  CHECK(crossed(eye, {0, -0.33, 0}) == 2);
+  CHECK(CrossedWall(eye, {0.44, 0.22, 0}, bin)->along_m == Approx(0.22 * 0.385 / 0.44));
+  CHECK(crossed(eye, {0.395, 0, 0.09}) == -1);  // On the rim.
+  CHECK(crossed(eye, {0.9, 0, 0.0}) == -1);     // Over it, to the table.
   const Vector3 beside(1.0, 0, 0.2);
-  CHECK(judge(beside, {0.405, 0, 0.05}) == LineOfSight::kFree);  // The wall's outer face.
-  CHECK(judge(beside, {0.2, 0, 0.0}) == LineOfSight::kThroughWall);
+  CHECK(crossed(beside, {0.405, 0, 0.05}) == -1);  // The wall's outer face.
+  CHECK(crossed(beside, {0.2, 0, 0.0}) == 1);
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "models/base/foreign/length_unit.h"
 #include "models/base/text.h"
 #include "perception/view/bin_evidence.h"
-#include "perception/view/floor_pose.h"
 #include "twin/app/view_pose.h"
 
 namespace tubetwin {
@@ -25,14 +24,6 @@ void RequirePoints(const OrganizedCloud& cloud, const std::string& file) {
     throw Error(ErrorKind::kBadData,
                 file + ": x y z: " + std::to_string(valid) + " of " + std::to_string(cloud.size()) +
                     " points are valid, at least " + std::to_string(kFewestPoints) + " are needed");
-  }
-}
-
-RigidTransform FitPose(const OrganizedCloud& cloud, const Bin& bin, const std::string& file) {
-  try {
-    return FitFloorPose(cloud, bin);
-  } catch (const Error& error) {
-    throw Error(error.kind(), file + ": x y z: " + error.what());
   }
 }
 
@@ -62,32 +53,25 @@ void RequireBinSeen(const std::vector<ViewOfFile>& views, const Bin& bin, const 
 
 }  // namespace
 
-std::vector<OrganizedCloud> ReadViews(const CloudInput& given, const Bin& bin,
-                                      const Common& common) {
-  const bool from_floor = given.pose == "floor";
+ViewsOfFiles ReadViews(const CloudInput& given, const Bin& bin, const Common& common) {
   std::optional<RigidTransform> X_NS;
-  if (!given.pose.empty() && !from_floor) X_NS = ParsePose(given.pose);
-  if (from_floor && given.clouds.size() > 1) {
-    throw Error(ErrorKind::kUsage, given.clouds[1] +
-                                       ": --pose floor is for one cloud: half a turn of the bin "
-                                       "between two would go unseen");
-  }
+  if (!given.pose.empty() && given.pose != "floor") X_NS = ParsePose(given.pose);
   std::vector<ViewOfFile> views;
   for (const std::string& file : given.clouds) {
     views.push_back({file, ReadCloud(file, MetresPer(given.units))});
     RequirePoints(views.back().cloud, file);
     views.back().cloud.label.clear();  // The pipeline never sees labels.
   }
-  if (from_floor) {
-    views[0].cloud.X_NS = FitPose(views[0].cloud, bin, views[0].file);
+  ViewsOfFiles out;
+  if (given.pose == "floor") {
+    out.fitted = UseFloorPose(bin, views, common);
   } else if (X_NS) {
     UseGivenPose(*X_NS, views, common);
   } else {
     RequireOwnPoses(views);
   }
   RequireBinSeen(views, bin, common);
-  std::vector<OrganizedCloud> out;
-  for (ViewOfFile& view : views) out.push_back(std::move(view.cloud));
+  for (ViewOfFile& view : views) out.clouds.push_back(std::move(view.cloud));
   return out;
 }
 

@@ -34,6 +34,13 @@ std::string LabelledName(const std::string& name, std::size_t view) {
   return name.substr(0, stem) + "_" + std::to_string(view) + name.substr(stem);
 }
 
+/// Where poses of --pose floor come from, for readers of tubes.json.
+Json PoseJson(const FloorPose& fitted) {
+  Json poses = Json::array();
+  for (const RigidTransform& X_NS : fitted.X_NS) poses.push_back(ToJson(X_NS));
+  return {{"from", "floor"}, {"walls", fitted.walls}, {"open", fitted.open}, {"X_NS", poses}};
+}
+
 struct PerceiveOptions {
   CloudInput input;
   std::string labelled;
@@ -46,7 +53,8 @@ int PerceiveClouds(const PerceiveOptions& given, const Common& common) {
   if (!given.input.bin.empty()) bin.size_m = ParseBinSize(given.input.bin);
   const Scenario scenario = LoadScenario({}, common, given.input.profile);
   StepTimer timer;
-  std::vector<OrganizedCloud> views = ReadViews(given.input, bin, common);
+  ViewsOfFiles read = ReadViews(given.input, bin, common);
+  std::vector<OrganizedCloud>& views = read.clouds;
   const double load_ms = timer.Lap();
   TubeScene scene = Perceive(views, part, bin, scenario.perception, common.parallelism());
   scene.timing_ms.load = load_ms;
@@ -54,6 +62,7 @@ int PerceiveClouds(const PerceiveOptions& given, const Common& common) {
   Json out = ToJson(scene);
   out["part"] = PartToJson(part);
   out["bin"] = ToJson(bin);
+  if (read.fitted) out["pose"] = PoseJson(*read.fitted);
   if (!given.labelled.empty()) {
     for (std::size_t i = 0; i < views.size(); ++i) {
       views[i].label = LabelPoints(views[i], scene, bin, common.parallelism());

@@ -51,7 +51,7 @@ Seen PerceiveScene(const CloudInput& input, const Scenario& scenario, const Comm
   if (input.part.empty()) throw Error(ErrorKind::kUsage, "plan of clouds: --part is needed");
   Seen seen{{}, LoadPart(input.part), ScenarioBin(scenario, std::nullopt), {}};
   if (!input.bin.empty()) seen.bin.size_m = ParseBinSize(input.bin);
-  const std::vector<OrganizedCloud> views = ReadViews(input, seen.bin, common);
+  const std::vector<OrganizedCloud> views = ReadViews(input, seen.bin, common).clouds;
   seen.scene = Perceive(views, seen.part, seen.bin, scenario.perception, common.parallelism());
   seen.points_N = VoxelDownsample(views, seen.bin);
   return seen;

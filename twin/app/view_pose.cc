@@ -45,6 +45,21 @@ PoseDifference Difference(const RigidTransform& a, const RigidTransform& b) {
           Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle()};
 }
 
+/// Gives the view another pose and tells of one that it had.
+void Replace(ViewOfFile& view, const RigidTransform& X_NS, const char* instead,
+             const Common& common) {
+  const PoseDifference difference = Difference(view.cloud.X_NS, X_NS);
+  const bool unsaid = view.cloud.X_NS.matrix() == RigidTransform::Identity().matrix();
+  if (!unsaid && !difference.none()) {
+    char off[80];
+    std::snprintf(off, sizeof off, "%.4g m and %.4g degrees off", difference.shift_m,
+                  Degrees(difference.turn_rad));
+    Say(common, view.file + ": " + instead + ", not the file's own pose " +
+                    PoseText(view.cloud.X_NS) + ", which is " + off);
+  }
+  view.cloud.X_NS = X_NS;
+}
+
 }  // namespace
 
 RigidTransform ParsePose(const std::string& text) {
@@ -93,18 +108,34 @@ void UseGivenPose(const RigidTransform& X_NS, std::vector<ViewOfFile>& views,
     }
     if (first == nullptr) first = &view;
   }
-  for (ViewOfFile& view : views) {
-    const PoseDifference difference = Difference(view.cloud.X_NS, X_NS);
-    const bool unsaid = view.cloud.X_NS.matrix() == RigidTransform::Identity().matrix();
-    if (!unsaid && !difference.none()) {
-      char off[80];
-      std::snprintf(off, sizeof off, "%.4g m and %.4g degrees off", difference.shift_m,
-                    Degrees(difference.turn_rad));
-      Say(common, view.file + ": --pose is used, not the file's own pose " +
-                      PoseText(view.cloud.X_NS) + ", which is " + off);
+  for (ViewOfFile& view : views) Replace(view, X_NS, "--pose is used", common);
+}
+
+FloorPose UseFloorPose(const Bin& bin, std::vector<ViewOfFile>& views, const Common& common) {
+  std::vector<OrganizedCloud> clouds;
+  for (const ViewOfFile& view : views) {
+    if (HasPose(view.cloud) != HasPose(views.front().cloud)) {
+      throw Error(ErrorKind::kBadData,
+                  "--pose floor: of " + views.front().file + " and " + view.file +
+                      " one knows where it was taken from and the other does not, so how they "
+                      "stand to each other stays open: give clouds of one kind");
     }
-    view.cloud.X_NS = X_NS;
+    clouds.push_back(view.cloud);
   }
+  FloorPose fitted;
+  try {
+    fitted = FitFloorPose(clouds, bin);
+  } catch (const Error& error) {
+    throw Error(error.kind(), views.front().file + (views.size() > 1 ? " and others" : "") +
+                                  ": --pose floor: " + error.what());
+  }
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    Replace(views[k], fitted.X_NS[k], "--pose floor is used", common);
+  }
+  Say(common, "pose fitted to the floor and the walls " + fitted.walls + ": " +
+                  PoseText(fitted.X_NS.front()) + "; " + fitted.open +
+                  " looks the same, the scanner's x axis is taken to point along +x");
+  return fitted;
 }
 
 void RequireOwnPoses(const std::vector<ViewOfFile>& views) {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "models/base/cloud/cloud.h"
+#include "models/bin.h"
+#include "perception/view/floor_pose.h"
 #include "twin/app/common.h"
 
 namespace tubetwin {
@@ -22,6 +24,10 @@ RigidTransform ParsePose(const std::string& text);
 /// Whether the file says where its scanner was: one that does not know writes nothing, or a turn
 /// of the axes alone, and no scanner stands in the middle of the bin's floor.
 bool HasPose(const OrganizedCloud& cloud);
+
+/// Fits the views' poses to floor and walls: what --pose floor asks for. The files' own poses only
+/// say how the views stand to each other. Throws Error(kBadData) with the files' names and why.
+FloorPose UseFloorPose(const Bin& bin, std::vector<ViewOfFile>& views, const Common& common);
 
 /// Gives every view the pose that the user says, which wins over the file's: a note tells what was
 /// not used. Throws Error(kUsage) when the files say that the views differ, so that one pose
