@@ -1,6 +1,7 @@
 #include "twin/app/view_pose.h"
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 
 #include "models/base/error.h"
