@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numeric>
 
 #include "models/base/error.h"
@@ -173,9 +174,24 @@ Part LoadPart(const std::string& name_or_path) {
   for (const EmbeddedText& text : EmbeddedTexts()) {
     if (NameOfText(text) == name_or_path && !name_or_path.empty()) return Shipped(text);
   }
-  throw Error(ErrorKind::kMissing, "no part is named '" + name_or_path + "'; nearest is '" +
-                                       NearestName(name_or_path, PartNames()) + "'; known: " +
-                                       Join(PartNames()) + ", or the path of a part file (.toml)");
+  const std::string ending = LowerCase(std::filesystem::path(name_or_path).extension().string());
+  if (ending == ".stl" || ending == ".obj" || ending == ".ply" || ending == ".step") {
+    throw Error(ErrorKind::kBadData, Printable(name_or_path) +
+                                         ": is a mesh; allowed: a part's name or a part file "
+                                         "(.toml)\n(tubetwin part import MESH --out P.toml makes "
+                                         "one)");
+  }
+  std::error_code ignored;  // What cannot be asked for is no file.
+  if (std::filesystem::is_regular_file(name_or_path, ignored)) {
+    throw Error(ErrorKind::kBadData, Printable(name_or_path) +
+                                         ": is no part file, whose name ends in .toml; known "
+                                         "parts: " +
+                                         Join(PartNames()));
+  }
+  throw Error(ErrorKind::kMissing, "no part is named '" + Printable(name_or_path.substr(0, 80)) +
+                                       "'; nearest is '" + NearestName(name_or_path, PartNames()) +
+                                       "'; known: " + Join(PartNames()) +
+                                       ", or the path of a part file (.toml)");
 }
 
 Part PartFromJson(const JsonView& view) {

@@ -26,7 +26,9 @@ void WriteJsonFile(const Json& json, const std::string& path) {
 }
 
 void JsonView::Fail(const std::string& problem) const {
-  throw Error(ErrorKind::kBadData, source_ + ": " + (path_.empty() ? "" : path_ + ": ") + problem);
+  // It may quote the file, of any characters.
+  throw Error(ErrorKind::kBadData,
+              source_ + ": " + Printable((path_.empty() ? "" : path_ + ": ") + problem));
 }
 
 JsonView JsonView::Field(const std::string& name) const {
@@ -37,7 +39,7 @@ JsonView JsonView::Field(const std::string& name) const {
     for (const auto& [key, value] : json_->items()) keys.push_back(key);
     const std::string nearest = NearestName(name, keys);
     Fail("field '" + name + "' is missing" +
-         (nearest.empty() ? std::string() : " (nearest present: '" + nearest + "')"));
+         (nearest.empty() ? std::string() : " (nearest present: '" + nearest.substr(0, 60) + "')"));
   }
   return JsonView(*found, source_, path_.empty() ? name : path_ + "." + name);
 }

@@ -1,11 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <stdexcept>
 #include <unordered_map>
-
-#include <assimp/scene.h>
-#include <assimp/Importer.hpp>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
@@ -14,46 +10,11 @@
 #include "models/mesh/mesh.h"
 #include "models/mesh/mesh_formats.h"
 
-/// What assimp calls when a file breaks an assumption of its readers: its own version ends the
-/// program, this one takes its place when the program is linked and lets the reader fail.
-namespace Assimp {
-[[noreturn]] ASSIMP_API void aiAssertViolation(const char* expression, const char* /*file*/,
-                                               int /*line*/) {
-  throw std::runtime_error(std::string("broken assumption ") + expression);
-}
-}  // namespace Assimp
-
 namespace tubetwin {
 namespace {
 
 /// Vertices closer than this share of the box's diagonal are one.
 constexpr double kWeld = 1e-5;
-
-/// All triangles of a scene; the file's vertices as they are, each face with its own.
-Mesh Gather(const aiScene& scene, const std::string& path) {
-  Mesh mesh;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& part = *scene.mMeshes[m];
-    const std::size_t first = mesh.vertices.size();
-    for (unsigned i = 0; i < part.mNumVertices; ++i) {
-      const aiVector3D& v = part.mVertices[i];
-      AddMeshVertex(path, {v.x, v.y, v.z}, mesh);
-    }
-    for (unsigned f = 0; f < part.mNumFaces; ++f) {
-      const aiFace& face = part.mFaces[f];
-      std::vector<int> corners;
-      for (unsigned k = 0; k < face.mNumIndices; ++k) {
-        if (face.mIndices[k] >= part.mNumVertices) {
-          RefuseMesh(path, "a face names vertex " + std::to_string(face.mIndices[k]) + " of " +
-                               std::to_string(part.mNumVertices));
-        }
-        corners.push_back(static_cast<int>(first + face.mIndices[k]));
-      }
-      AddMeshPolygon(path, corners, mesh);
-    }
-  }
-  return mesh;
-}
 
 /// Makes vertices at one place one vertex and drops faces and vertices that are nothing then.
 Mesh Weld(const Mesh& mesh) {
@@ -92,25 +53,6 @@ Mesh Weld(const Mesh& mesh) {
     out.faces.push_back(corners);
   }
   return out;
-}
-
-/// Assimp's reader of OBJ.
-Mesh ReadObj(const std::string& path, const std::string& content) {
-  const std::string other = MistakenContent(std::string_view(content).substr(0, 64));
-  if (!other.empty()) RefuseMesh(path, "no OBJ mesh: it " + other);
-  Assimp::Importer importer;
-  const aiScene* scene = nullptr;
-  try {
-    scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, "obj");
-  } catch (const std::exception& e) {
-    RefuseMesh(path, std::string("cannot be read as a mesh: ") + e.what());
-  }
-  if (scene == nullptr) {
-    // It quotes the file, of any bytes and length.
-    const std::string why = Printable(std::string(importer.GetErrorString()).substr(0, 120));
-    RefuseMesh(path, "cannot be read as a mesh: " + (why.empty() ? "unknown content" : why));
-  }
-  return Gather(*scene, path);
 }
 
 }  // namespace
@@ -154,7 +96,7 @@ Mesh ReadMesh(const std::string& path) {
                                       : ReadObj(path, content);
   if (raw.faces.empty()) {
     RefuseMesh(path, "holds no triangle (" + std::to_string(raw.vertices.size()) +
-                         " vertices); a surface is needed");
+                         " vertices); a surface is needed, a cloud is none");
   }
   Mesh mesh = Weld(raw);
   if (mesh.faces.empty()) RefuseMesh(path, "all its triangles are points or lines");

@@ -20,6 +20,8 @@ void AddMeshPolygon(const std::string& path, const std::vector<int>& corners, Me
 
 /// Triangles of an STL file, text or binary, each with its own vertices.
 Mesh ReadStl(const std::string& path, const std::string& content);
+/// Faces of an OBJ file over its vertices as they are.
+Mesh ReadObj(const std::string& path, const std::string& content);
 /// Faces and triangle strips of a PLY file, over its vertices as they are.
 Mesh ReadPlyMesh(const std::string& path);
 

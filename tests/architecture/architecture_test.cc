@@ -151,14 +151,21 @@ TEST_CASE("every source file is listed by name in the build") {
 
 TEST_CASE("every library that the build looks for is in a package that ./dev installs") {
   const std::map<std::string, std::string> package_of = {
-      {"Eigen3", "libeigen3-dev"}, {"nlohmann_json", "nlohmann-json3-dev"},
-      {"Threads", "g++"},          {"Catch2", "catch2"},
-      {"CLI11", "libcli11-dev"},   {"OpenCV", "libopencv-dev"},
-      {"OpenGL", "libopengl-dev"}, {"embree", "libembree-dev"},
-      {"fcl", "libfcl-dev"},       {"zstd", "libzstd-dev"},
-      {"assimp", "libassimp-dev"}, {"Boost", "libboost-dev"},
-      {"spdlog", "libspdlog-dev"}, {"benchmark", "libbenchmark-dev"},
-      {"PCL", "libpcl-dev"},       {"orocos_kdl", "liborocos-kdl-dev"},
+      {"Eigen3", "libeigen3-dev"},
+      {"nlohmann_json", "nlohmann-json3-dev"},
+      {"Threads", "g++"},
+      {"Catch2", "catch2"},
+      {"CLI11", "libcli11-dev"},
+      {"OpenCV", "libopencv-dev"},
+      {"OpenGL", "libopengl-dev"},
+      {"embree", "libembree-dev"},
+      {"fcl", "libfcl-dev"},
+      {"zstd", "libzstd-dev"},
+      {"Boost", "libboost-dev"},
+      {"spdlog", "libspdlog-dev"},
+      {"benchmark", "libbenchmark-dev"},
+      {"PCL", "libpcl-dev"},
+      {"orocos_kdl", "liborocos-kdl-dev"},
       {"tubetwin", "cmake"}};  // Of itself, in the test of its installation.
   const std::string dev = ReadFile(kTop + "/dev");
   const std::size_t begin = dev.find("kBuildPackages=(");

@@ -92,7 +92,6 @@ const std::vector<ThirdParty>& ThirdParties() {
       {"pcl/", {"perception/leao2020", "tests"}, true},
       {"ode/", {"tests"}, true},
       {"fcl/", {"models"}, true},
-      {"assimp/", {"models"}, true},
       {"embree3/", {"twin/render"}, true},
       {"opencv2/", {"twin/render", "perception", "tests"}, true},
       {"EGL/", {"twin/render"}},

@@ -206,6 +206,8 @@ TEST_CASE("A column that nobody needs stops nothing", "[unit]") {
   CHECK(Read(binary).intensity.empty());
   CheckTwoPoints(head +
                  "DATA ascii\n7 0.1 a b 0.2 1.5 0 0 0.3 12:30\n8 0.4 - - 0.5 x 0 0 0.6 \xff\n");
+  CheckTwoPoints("FIELDS X Y Z GpsTime\n" + std::string(kPoints) +
+                 "DATA ascii\n0.1 0.2 0.3 7\n0.4 0.5 0.6 8\n");
   CheckTwoPoints("FIELDS rgb x y z rgb\n" + std::string(kPoints) +
                  "DATA ascii\n1 0.1 0.2 0.3 2\n1 0.4 0.5 0.6 2\n");
   // A bad word in a column that could be ours drops that column whole.

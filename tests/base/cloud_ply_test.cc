@@ -66,11 +66,14 @@ const std::string kVertex =
 const std::string kRows = "0.1 0.2 0.3\n0.4 0.5 0.6\n";
 const std::string kText = "ply\nformat ascii 1.0\n" + kVertex + "end_header\n" + kRows;
 
-std::string Changed(const std::string& from, const std::string& to) {
-  std::string text = kText;
+std::string Replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   REQUIRE(at != std::string::npos);
   return text.replace(at, from.size(), to);
+}
+
+std::string Changed(const std::string& from, const std::string& to) {
+  return Replaced(kText, from, to);
 }
 
 TEST_CASE("PLY is read in either byte order, with columns of every size and lists", "[unit]") {
@@ -136,6 +139,8 @@ TEST_CASE("Comments may stand anywhere and say anything", "[unit]") {
       "PLY \r\nFORMAT ASCII 1.0\r\nElement vertex 2\r\nproperty FLOAT X\r\n"
       "property float Y\r\nproperty float Z\r\nEnd_Header\r\n" +
       kRows);
+  CheckTwoPoints(Changed("element", "Created by a program, source file:\nelement"));
+  CheckBad(Changed("property float z", "proprety float z"), "lacks property 'z', it has: x y");
   std::string mac = kText;
   std::replace(mac.begin(), mac.end(), '\n', '\r');
   CheckTwoPoints(mac);
@@ -202,8 +207,8 @@ TEST_CASE("A bad PLY header says what is missing and what it has", "[unit]") {
            "format is 'utf8', allowed are ascii, binary_little_endian, binary_big_endian");
   CheckBad(Changed("format ascii 1.0\n", ""), "element stands before format");
   CheckBad("ply\nend_header\n", "without a line format");
-  CheckBad(Changed("end_header", "end"), "'end' is no PLY header entry");
   std::string binary = Changed("ascii", "binary_little_endian");
+  CheckBad(Replaced(binary, "end_header", "end"), "'end' is no PLY header entry");
   binary.replace(binary.find("float x"), 7, "triple x");
   CheckBad(binary, "property 'x' has type 'triple', allowed are char");
   CheckBad("# .PCD v0.7\n", "no PLY file: it is a PCD cloud");

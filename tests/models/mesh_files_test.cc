@@ -174,6 +174,22 @@ TEST_CASE("OBJ is read with what exporters put beside its faces", "[unit]") {
   CheckPipe("a.OBJ", "\xef\xbb\xbf" + obj);
   CheckPipe("a.obj", "vt 0 0\nvn 0 0 1\n" + obj);
   CheckPipe("a.obj", obj + "l 1 2\np 1\n");
+  CheckPipe("a.obj",
+            "g An f Three\nvt 0 0\nvn 0 0 1 # up\n" + Replaced(obj, " ", " \\\n ") + "f 1 1 1\n");
+  // Corners with texture and normal, and counted from the end.
+  std::string with_corners = obj.substr(0, obj.find("f "));
+  for (const auto& face : kPipe.faces) {
+    with_corners += "f " + std::to_string(face[0] + 1) + "/1/1 " + std::to_string(face[1] + 1) +
+                    "//1 " + std::to_string(face[2] - static_cast<int>(kPipe.vertices.size())) +
+                    "/1\n";
+  }
+  CheckPipe("a.obj", with_corners);
+  for (const char* corner : {"0", "-999999", "999999", "x", "1.5", "/1"}) {
+    CheckBad("a.obj", obj + "f 1 2 " + corner + "\n",
+             "has a face with corner '" + std::string(corner));
+  }
+  CheckBad("a.obj", "v 0 0,5 1\n" + obj, "line 1 has '0,5' where a vertex needs a number");
+  CheckBad("a.obj", "v 0 nan 1\n" + obj, "finite numbers are needed");
   CheckBad("a.obj", "PK\x03\x04 zip", "no OBJ mesh: it is a zip archive");
 }
 

@@ -9,8 +9,8 @@
 #include "models/base/text.h"
 #include "perception/label_points.h"
 #include "perception/perceive.h"
-#include "twin/app/cloud_input.h"
 #include "twin/app/common.h"
+#include "twin/app/input/cloud_input.h"
 
 namespace tubetwin {
 namespace {

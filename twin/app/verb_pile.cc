@@ -8,6 +8,7 @@
 #include "models/base/text.h"
 #include "planner/cell_check/cell_check.h"
 #include "twin/app/common.h"
+#include "twin/app/input/file_advice.h"
 #include "twin/render/pile_picture.h"
 #include "twin/round/scenario_check.h"
 
@@ -50,7 +51,7 @@ int Generate(const PileOptions& options, const Common& common) {
 }
 
 int Show(const PileOptions& options, bool part_given, const Common& common) {
-  const Pile pile = LoadPile(options.file, Overrides(options, part_given));
+  const Pile pile = LoadGivenPile(options.file, Overrides(options, part_given));
   const TubeScene scene = SceneOfPile(pile);
   if (common.json) {
     Json tubes = Json::array();
@@ -129,7 +130,7 @@ void AddPileVerb(CLI::App& app, Common& common) {
   AddCommonOptions(*import, common, "Pile file to write (pile.json)", true);
   import->callback([read, import_part, &common] {
     common.action = [read, import_part, &common] {
-      SavePile(LoadPile(read->file, Overrides(*read, import_part->count() > 0)), common.out);
+      SavePile(LoadGivenPile(read->file, Overrides(*read, import_part->count() > 0)), common.out);
   return 0;
 };
 }  // namespace tubetwin

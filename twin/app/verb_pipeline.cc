@@ -13,6 +13,7 @@
 #include "planner/evaluator/evaluator.h"
 #include "planner/pick/planner_config.h"
 #include "twin/app/common.h"
+#include "twin/app/input/file_advice.h"
 #include "twin/render/scan/scan_geometry.h"
 
 namespace tubetwin {
@@ -70,7 +71,7 @@ int ScanPile(const ScanOptions& scan, const Common& common) {
   PileOverrides overrides;
   if (!scan.part.empty()) overrides.part = scan.part;
   if (!scan.bin.empty()) overrides.bin_size_m = ParseBinSize(scan.bin);
-  const Pile pile = LoadPile(scan.pile, overrides);
+  const Pile pile = LoadGivenPile(scan.pile, overrides);
   const Scenario scenario = LoadScenario({}, common);
   const std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
   const RoundPhysics physics = ScenarioPhysics(scenario, pile.part);
@@ -166,7 +167,7 @@ int EvaluatePile(const EvaluateOptions& given, const Common& common) {
   PileOverrides overrides;
   if (!given.part.empty()) overrides.part = given.part;
   if (!given.bin.empty()) overrides.bin_size_m = ParseBinSize(given.bin);
-  const Pile pile = LoadPile(given.pile, overrides);
+  const Pile pile = LoadGivenPile(given.pile, overrides);
   RequireOutOfWalls(pile, given.pile);
   const Scenario scenario = LoadScenario({}, common);
   const TubeScene scene = SceneOfPile(pile);

@@ -12,8 +12,9 @@
 #include "planner/pick/pick_planner.h"
 #include "planner/pick/runnable_plan.h"
 #include "planner/scene_query/voxel_downsample.h"
-#include "twin/app/cloud_input.h"
 #include "twin/app/common.h"
+#include "twin/app/input/cloud_input.h"
+#include "twin/app/input/file_advice.h"
 
 namespace tubetwin {
 namespace {
@@ -33,6 +34,10 @@ Seen ReadScene(const CloudInput& input, const Scenario& scenario) {
   }
   const Json json = ReadJsonFile(file);
   const JsonView document(json, file);
+  if (document.IsObject() && json.value("schema", Json()) == "tubetwin/pile/1") {
+    throw Error(ErrorKind::kBadData,
+                file + ": is a pile; allowed: perceived tubes, or clouds" + AdviceFor(file));
+  }
   Seen seen{TubeSceneFromJson(document), {}, {}, {}};
   if (!input.part.empty()) {
     seen.part = LoadPart(input.part);

@@ -9,8 +9,10 @@
 #include "models/base/error.h"
 #include "models/base/foreign/length_unit.h"
 #include "models/base/json.h"
-#include "twin/app/cloud_input.h"
+#include "models/base/text.h"
 #include "twin/app/common.h"
+#include "twin/app/input/cloud_input.h"
+#include "twin/app/input/file_advice.h"
 #include "twin/render/perceived_picture.h"
 #include "twin/render/picture_points.h"
 #include "twin/render/pile_picture.h"
@@ -69,7 +71,10 @@ void RenderCloud(const RenderOptions& given, const std::string& out) {
   const OrganizedCloud cloud = ReadCloud(given.file, MetresPer(given.units));
   if (cloud.X_NS.matrix() == RigidTransform::Identity().matrix()) {
     throw Error(ErrorKind::kBadData,
-                given.file + ": says no pose of the scanner, so the bin cannot be drawn around it");
+                given.file +
+                    ": says no pose of the scanner, so the bin cannot be drawn around it"
+                    "\n(tubetwin perceive FILE --part P --pose POSE --labelled F.pcd --out "
+                    "tubes.json writes F.pcd with its pose)");
   }
   PerceivedPicture picture;
   if (!given.bin.empty()) picture.bin.size_m = ParseBinSize(given.bin);
@@ -82,7 +87,8 @@ void RenderCloud(const RenderOptions& given, const std::string& out) {
 }
 
 /// Whether a file is a cloud by its ending, packed or not.
-bool IsCloud(std::filesystem::path file) {
+bool IsCloud(const std::string& name) {
+  std::filesystem::path file(LowerCase(name));
   if (file.extension() == ".zst") file.replace_extension();
   return file.extension() == ".pcd" || file.extension() == ".ply";
 }
@@ -107,7 +113,7 @@ int Render(const RenderOptions& given, const Common& common) {
   if (!given.units.empty() && !IsCloud(given.file)) {
     throw Error(ErrorKind::kUsage, given.file + ": --units is for clouds (.pcd, .ply)");
   }
-  const std::string kind = std::filesystem::path(given.file).extension().string();
+  const std::string kind = LowerCase(std::filesystem::path(given.file).extension().string());
   if (kind == ".json" || kind == ".csv" || kind == ".txt") {
     if (ending != ".png") {
       throw Error(ErrorKind::kUsage,
@@ -120,7 +126,7 @@ int Render(const RenderOptions& given, const Common& common) {
     PileOverrides overrides;
     if (!given.part.empty()) overrides.part = given.part;
     if (!given.bin.empty()) overrides.bin_size_m = ParseBinSize(given.bin);
-    RenderPilePicture(LoadPile(given.file, overrides), common.out);
+    RenderPilePicture(LoadGivenPile(given.file, overrides), common.out);
     return 0;
   }
   if (IsCloud(given.file)) {
@@ -130,6 +136,11 @@ int Render(const RenderOptions& given, const Common& common) {
     }
     RenderCloud(given, common.out);
     return 0;
+  }
+  const std::string advice = AdviceFor(given.file);
+  if (!advice.empty() && kind != ".bin") {
+    throw Error(ErrorKind::kBadData,
+                given.file + ": is no recording, pile, tubes.json or cloud" + advice);
   }
   const Recording recording = ReadRecording(given.file);
   if (ending == ".mp4") {

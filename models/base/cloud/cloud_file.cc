@@ -179,7 +179,7 @@ void FinishPoints(const CloudFile& file, OrganizedCloud& cloud) {
               file.path() + ": x y z: the median distance from the scanner is " +
                   Number(*middle > 1 ? std::round(*middle) : *middle) + ", allowed are " +
                   Number(kMinMedianDistance_m) + " to " + Number(kMaxMedianDistance_m) +
-                  " m: the file is not in metres" + remedy);
+                  " m: the file is not in metres, or no scan of a bin" + remedy);
 }
 
 std::string CloudEnding(const std::string& path) {

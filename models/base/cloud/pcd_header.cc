@@ -48,8 +48,8 @@ void ParseFields(const CloudFile& file, const Words& words, PcdHeader& header) {
                   " names, allowed are 3 to 256, among them x y z");
   }
   for (std::size_t i = 1; i < words.size(); ++i) {
-    const bool needed = words[i] == "x" || words[i] == "y" || words[i] == "z";
-    if (needed && header.Find(words[i]) != nullptr) {
+    const std::string low = LowerCase(words[i]);
+    if ((low == "x" || low == "y" || low == "z") && header.Find(low) != nullptr) {
       file.FailLine("FIELDS names " + Quoted(words[i]) + " twice");
     }
     PcdField field;
@@ -185,7 +185,7 @@ std::string KeyOf(const CloudFile& file, std::string_view word) {
 
 const PcdField* PcdHeader::Find(std::string_view name) const {
   for (const PcdField& field : fields) {
-    if (field.name == name) return &field;
+    if (LowerCase(field.name) == name) return &field;
   }
   return nullptr;
 }

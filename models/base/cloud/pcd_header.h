@@ -34,7 +34,7 @@ struct PcdHeader {
   std::size_t record_size = 0;
   int columns = 0;
 
-  /// The first field of that name, or null.
+  /// The first field of that name (in small letters; the file's may be large), or null.
   const PcdField* Find(std::string_view name) const;
 };
 

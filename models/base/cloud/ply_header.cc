@@ -129,7 +129,8 @@ PlyHeader ReadPlyHeader(CloudFile& file) {
     } else if (key == "end_header") {
       if (!format_seen) file.FailLine("the header ends without a line format");
       return header;
-    } else {
+    } else if (!header.text() || !format_seen) {
+      // In text it may be a comment that was not called one: rows are held against the properties.
       file.FailLine(Quoted(words[0]) +
                     " is no PLY header entry, allowed are format, comment, obj_info, element, "
                     "property, end_header");

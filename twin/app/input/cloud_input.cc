@@ -1,4 +1,4 @@
-#include "twin/app/cloud_input.h"
+#include "twin/app/input/cloud_input.h"
 
 #include <algorithm>
 #include <optional>
@@ -9,10 +9,24 @@
 #include "models/base/foreign/length_unit.h"
 #include "models/base/text.h"
 #include "perception/view/bin_evidence.h"
-#include "twin/app/view_pose.h"
+#include "twin/app/input/file_advice.h"
+#include "twin/app/input/view_pose.h"
 
 namespace tubetwin {
 namespace {
+
+/// A cloud; the refusal of another file says which verb takes it.
+OrganizedCloud ReadGivenCloud(const std::string& file, std::optional<double> unit_m) {
+  const std::string low = LowerCase(file);
+  for (const char* ending : {".pcd", ".ply", ".pcd.zst", ".ply.zst"}) {
+    if (low.ends_with(ending)) return ReadCloud(file, unit_m);
+  }
+  try {
+    return ReadCloud(file, unit_m);
+  } catch (const Error& error) {
+    throw Error(error.kind(), error.what() + AdviceFor(file));
+  }
+}
 
 /// Fewer points show nothing that could be judged.
 constexpr std::size_t kFewestPoints = 50;
@@ -58,7 +72,7 @@ ViewsOfFiles ReadViews(const CloudInput& given, const Bin& bin, const Common& co
   if (!given.pose.empty() && given.pose != "floor") X_NS = ParsePose(given.pose);
   std::vector<ViewOfFile> views;
   for (const std::string& file : given.clouds) {
-    views.push_back({file, ReadCloud(file, MetresPer(given.units))});
+    views.push_back({file, ReadGivenCloud(file, MetresPer(given.units))});
     RequirePoints(views.back().cloud, file);
     views.back().cloud.label.clear();  // The pipeline never sees labels.
   }

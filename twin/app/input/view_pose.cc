@@ -1,4 +1,4 @@
-#include "twin/app/view_pose.h"
+#include "twin/app/input/view_pose.h"
 
 #include <cmath>
 #include <cstdio>

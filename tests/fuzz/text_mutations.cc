@@ -1,7 +1,8 @@
-// The fuzz target without a fuzzer: seeded mutations of the corpus, or the corpus itself as files.
-//   cloud_mutations COUNT [SEED [FILE]]  COUNT mutated files; each is written to FILE before it is
-//                                        tried, so FILE is what killed the process
-//   cloud_mutations --corpus FOLDER      the files that mutations start from
+// The fuzz target of a reader of files without a fuzzer: seeded mutations of the corpus, words and
+// lines among them, or the corpus itself as files.
+//   NAME_mutations COUNT [SEED [FILE]]  COUNT mutated files; each is written to FILE before it is
+//                                       tried, so FILE is what killed the process
+//   NAME_mutations --corpus FOLDER      the files that mutations start from
 
 #include <algorithm>
 #include <cstdio>
@@ -10,7 +11,7 @@
 
 #include "models/base/files.h"
 #include "models/base/random.h"
-#include "tests/fuzz/cloud_target.h"
+#include "tests/fuzz/byte_target.h"
 
 namespace tubetwin {
 namespace {
@@ -47,6 +48,17 @@ void ReplaceWord(std::string& text, RandomStream& stream) {
                                        "element",
                                        "property",
                                        "65536",
+                                       "binary_compressed",
+                                       "binary_big_endian",
+                                       "1.#QNAN",
+                                       "0,5",
+                                       ";",
+                                       "vertex",
+                                       "facet",
+                                       "endfacet",
+                                       "tube,index,x,y,z",
+                                       "\"",
+                                       "mm",
                                        ""};
   const std::size_t at = Place(text, stream);
   const std::size_t begin = text.find_first_not_of(" \n", at);
@@ -99,7 +111,7 @@ std::string Mutated(std::string text, const std::string& other, RandomStream& st
 }
 
 int Run(int argc, char** argv) {
-  const std::vector<std::string> corpus = CloudCorpus();
+  const std::vector<std::string> corpus = ByteCorpus();
   if (argc == 3 && std::strcmp(argv[1], "--corpus") == 0) {
     for (std::size_t i = 0; i < corpus.size(); ++i) {
       WriteFileAtomically(std::string(argv[2]) + "/" + std::to_string(i), corpus[i]);
@@ -108,18 +120,18 @@ int Run(int argc, char** argv) {
   }
   const int count = argc > 1 ? std::atoi(argv[1]) : 0;
   if (count <= 0) {
-    std::fprintf(stderr, "usage: cloud_mutations COUNT [SEED [FILE]] | --corpus FOLDER\n");
+    std::fprintf(stderr, "usage: %s COUNT [SEED [FILE]] | --corpus FOLDER\n", argv[0]);
     return 64;
   }
   const auto seed = static_cast<std::uint64_t>(argc > 2 ? std::atoi(argv[2]) : 1);
   const auto files = static_cast<std::uint32_t>(corpus.size());
-  for (const std::string& text : corpus) TryCloudBytes(text);
+  for (const std::string& text : corpus) TryBytes(text);
   for (int i = 0; i < count; ++i) {
-    RandomStream stream(seed, static_cast<std::uint64_t>(i), "cloud mutation");
+    RandomStream stream(seed, static_cast<std::uint64_t>(i), "text mutation");
     const std::string text =
         Mutated(corpus[stream.Index(files)], corpus[stream.Index(files)], stream);
     if (argc > 3) WriteFileAtomically(argv[3], text);
-    TryCloudBytes(text);
+    TryBytes(text);
   }
   std::printf("%d mutated files read or refused\n", count);
   return 0;
