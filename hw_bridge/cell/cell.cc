@@ -121,6 +121,7 @@ WaitOutcome WaitWhileMoving(
     }
     std::optional<WaitOutcome> trouble = Late(cell, state, waited, held);
     if (!trouble) trouble = MotionTrouble(cell, state, path);
+    if (!trouble) trouble = StopAtOnce(cell, state.progress_s);
     if (!trouble && each_sample) trouble = each_sample(state);
     if (trouble) return EndMotion(cell, *trouble);
     const TimeNs before = cell.clock.Now();
@@ -199,6 +200,8 @@ const char* ToString(WaitOutcome::Status status) {
       return "gripper fault";
     case WaitOutcome::Status::kObjectLost:
       return "object lost";
+    case WaitOutcome::Status::kInterrupted:
+      return "interrupted";
   }
   return "unknown";
 }
@@ -258,6 +261,10 @@ GripperOutcome MoveGripper(Cell& cell, const GripperCommand& command) {
     return result;
   }
   const double before_m = result.state.opening_m;
+  if (auto stop = StopAtOnce(cell, 0.0)) {
+    result.outcome = *stop;
+    return result;
+  }
   cell.gripper.Command(command);
   const TimeNs end = cell.clock.Now() + FromSeconds(kGripperTimeout_s);
   result.state = cell.gripper.State();

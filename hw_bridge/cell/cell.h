@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -26,6 +27,9 @@ struct Cell {
   std::optional<double> carried_opening_m = {};
   /// Set when the first tube was placed: the cell is set up right, and start_speed_m_s is over.
   bool proven = false;
+  /// A person wants the arm to stand: true ends each motion on its path and lets nothing move any
+  /// more. Empty: nobody asks.
+  std::function<bool()> stop_at_once = {};
 };
 
 // Waiting, guarding and weighing: the same code on every cell, loops over clock and states. Limits
@@ -47,6 +51,7 @@ struct WaitOutcome {
     kLinkLost,      ///< The arm no longer says where it is.
     kSensorFault,   ///< The wrist is silent, saturated or wrong where its wrench matters.
     kGripperFault,  ///< A fault code, silence, or what the gripper does is not what it was told.
+    kInterrupted,   ///< Cell::stop_at_once; also of the gripper.
     kObjectLost,    ///< The fingers have closed on nothing while a tube was carried.
   } status = Status::kDone;
   std::string reason;
@@ -71,7 +76,7 @@ WaitOutcome RunGuarded(Cell& cell, const CheckedTrajectory& trajectory, double f
 /// What the gripper says after a command, and whether it may be believed.
 struct GripperOutcome {
   GripperState state;
-  WaitOutcome outcome;  ///< kDone, kTimedOut (still moving), kGripperFault.
+  WaitOutcome outcome;  ///< kDone, kTimedOut (still moving), kGripperFault, kInterrupted.
 };
 /// Commands the gripper and waits until it is at its position or has met something (5 s at most).
 GripperOutcome MoveGripper(Cell& cell, const GripperCommand& command);

@@ -76,7 +76,15 @@ std::optional<WaitOutcome> CarriedTrouble(const Cell& cell, const GripperState& 
 
 }  // namespace
 
+std::optional<WaitOutcome> StopAtOnce(const Cell& cell, double progress_s) {
+  if (!cell.stop_at_once || !cell.stop_at_once()) return std::nullopt;
+  return Trouble(WaitOutcome::Status::kInterrupted,
+                 "asked to stop at once; the arm stands on its path, the fingers stay as they are",
+                 progress_s);
+}
+
 std::optional<WaitOutcome> RefuseStart(const Cell& cell, const CheckedTrajectory& trajectory) {
+  if (auto stop = StopAtOnce(cell, 0.0)) return stop;
   const ArmState state = cell.arm.State();
   if (!state.q.allFinite()) return NoPlace(state);
   if (state.mode == ArmMode::kDisconnected) {

@@ -9,6 +9,9 @@ namespace tubetwin {
 // What cell.cc watches; the cell room's own.
 
 /// Why `trajectory` must not be sent to the arm as it is now, or nothing.
+/// kInterrupted once somebody has asked for it.
+std::optional<WaitOutcome> StopAtOnce(const Cell& cell, double progress_s);
+
 std::optional<WaitOutcome> RefuseStart(const Cell& cell, const CheckedTrajectory& trajectory);
 
 /// The trajectory, stretched until E moves no faster than the cell allows.

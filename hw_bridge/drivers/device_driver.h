@@ -37,6 +37,13 @@ struct DriverLink {
   std::string reached;
 };
 
+/// One thing that a device's own supervision tells.
+struct DeviceFinding {
+  std::string what;  ///< "arm mode".
+  std::string told;  ///< "PLAY, REMOTE".
+  std::string fix;   ///< What a person does about it; empty: it is fine.
+};
+
 /// A kind of device that can serve a role of the cell (`Device`: Arm, Gripper, ForceTorqueSensor or
 /// Scanner): its keys in a cell file and how it is connected. Each object holds the values of its
 /// keys. How to write one: README.md beside this file.
@@ -63,6 +70,13 @@ class DeviceDriver {
   /// what was awaited, within 10 s.
   virtual std::unique_ptr<Device> Connect(const std::string& link,
                                           const DriverContext& context) const = 0;
+  /// What else the device's controller tells of itself, by other ways than the one that `device`
+  /// (made by Connect) uses; moves and changes nothing. Does not throw: what cannot be asked is a
+  /// finding.
+  virtual std::vector<DeviceFinding> Examine(const Device& /*device*/,
+                                             const DriverContext& /*context*/) const {
+    return {};
+  }
   /// Makes `counts` an object that tells what came over the link so far and what was lost. `device`
   /// came from Connect of a driver of this role; a device of another kind, or one without anything
   /// to tell, leaves `counts` as it is.

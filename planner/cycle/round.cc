@@ -334,6 +334,9 @@ std::optional<RoundReport> Round::AfterRefusal(const StepOutcome& refused) {
 
 std::optional<RoundReport> Round::AfterTrouble(const StepOutcome& trouble) {
   EndAttempt(AttemptOutcome::kFault, trouble.reason);
+  if (trouble.device == WaitOutcome::Status::kInterrupted) {
+    return End(RoundEnd::kInterrupted, trouble.reason);
+  }
   if (GoOnAfterStop(c_, trouble) == Acknowledgement::kGoOn) return std::nullopt;
   return End(RoundEnd::kFault, trouble.reason);
 }

@@ -80,7 +80,8 @@ StepOutcome PathExecutor::RunFingers(const PathSegment& segment, const MoveFinge
   const GripperOutcome moved = MoveGripper(cell_, fingers.command);
   fingers_ = moved.state;
   // Fingers that still move at the end of the wait are judged by their opening and by weight.
-  if (moved.outcome.status == WaitOutcome::Status::kGripperFault) {
+  if (moved.outcome.status == WaitOutcome::Status::kGripperFault ||
+      moved.outcome.status == WaitOutcome::Status::kInterrupted) {
     return StepOutcome::Trouble(moved.outcome, segment.label);
   }
   const bool closing = fingers.command.opening_m < fingers.expected_opening_m;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """bridge_test.py PROGRAM: the pipeline over the wire, as a user meets it, on emulated devices."""
 
+import json
 import os
 import signal
 import socket
@@ -62,6 +63,41 @@ def killed_or_frozen_while_carrying(folder):
             emulation.kill()
 
 
+def jogged(folder):
+    emulation = Emulation(PROGRAM, folder + "/jogged", rate=4, overrides=ONE_TUBE)
+    verb = [PROGRAM, "jog", "--cell", emulation.cell, "--joint", "6", "--json"]
+    asked = subprocess.run(verb, capture_output=True, text=True, timeout=60,
+                           stdin=subprocess.DEVNULL)
+    check(asked.returncode == 64 and "--yes" in asked.stderr, f"nobody to ask: {asked.stderr}")
+    check(not events(emulation, "arm moves"), "and nothing moved")
+    joints = []
+    for degrees in ("1", "-1"):
+        done = subprocess.run(verb + ["--yes", "--degrees", degrees], capture_output=True,
+                              text=True, timeout=60)
+        check(done.returncode == 0, f"jog by {degrees}: {done.returncode} {done.stderr}")
+        joints.append(json.loads(done.stdout)["joints_deg"])
+    check(abs(joints[0][5] - joints[1][5] - 1.0) < 0.1, f"joint 6 has turned: {joints}")
+    emulation.stop()
+
+
+def asked_twice_to_stop(folder):
+    emulation = Emulation(PROGRAM, folder + "/twice", rate=2, overrides=ONE_TUBE)
+    run = Run(PROGRAM, emulation.cell, folder + "/twice_run")
+    check(emulation.wait_for("carry"), "a tube is carried")
+    opened = events(emulation, "open")
+    run.process.send_signal(signal.SIGINT)
+    time.sleep(0.2)
+    run.process.send_signal(signal.SIGINT)
+    began = time.monotonic()
+    code, err = run.wait(20)
+    check(time.monotonic() - began < 5.0, "a second Ctrl-C ends the round within 5 s")
+    check(code == 75, f"and it was interrupted: {code} {err}")
+    check(run.summary()["end"] == "interrupted", f"the summary says so: {run.summary()}")
+    check(events(emulation, "open") == opened, "the fingers were not opened")
+    emulation.stop()
+    check(emulation.world()["held_ids"] == [1], "the tube still hangs")
+
+
 def what_may_not_move(folder):
     emulation = Emulation(PROGRAM, folder + "/unarmed", overrides=ONE_TUBE)
     with open(emulation.cell) as file:
@@ -99,4 +135,4 @@ def what_may_not_move(folder):
     emulation.stop()
 
 
-run_tests(a_round_over_the_wire, killed_or_frozen_while_carrying, what_may_not_move)
+run_tests(a_round_over_the_wire, killed_or_frozen_while_carrying, asked_twice_to_stop, jogged, what_may_not_move)

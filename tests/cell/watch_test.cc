@@ -47,6 +47,22 @@ TEST_CASE("An arm that falls silent while it moves is stopped fast: link lost", 
   CHECK(fake.arm.last_stop == StopKind::kFast);
 }
 
+TEST_CASE("A person who asks for a stop at once gets it on the path, and nothing moves after it",
+          "[unit]") {
+  FakeCell fake;
+  bool asked = false;
+  fake.cell.stop_at_once = [&] { return asked; };
+  At(fake, 0.5, [&] { asked = true; });
+  CheckStopped(fake, RunTrajectory(fake.cell, fake.Move(0.2, 3.0)), Status::kInterrupted,
+               "asked to stop at once", 0.01);
+  CHECK(fake.arm.last_stop == StopKind::kOnPath);
+  CHECK(RunTrajectory(fake.cell, fake.Move(0.2, 1.0)).status == Status::kInterrupted);
+  CHECK(RunGuarded(fake.cell, fake.Move(0.2, 1.0), 10.0).status == Status::kInterrupted);
+  CHECK(fake.arm.started == 1);
+  CHECK(MoveGripper(fake.cell, {0.08, 0.1, 60.0}).outcome.status == Status::kInterrupted);
+  CHECK(fake.gripper.commands == 0);
+}
+
 TEST_CASE("An arm that leaves its path is stopped, one that lags on it is not", "[unit]") {
   FakeCell fake;
   At(fake, 0.5, [&] { fake.arm.offset[3] = Radians(8.0); });

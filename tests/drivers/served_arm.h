@@ -64,6 +64,7 @@ class ServedArm {
     config.motion_port = emulator_.motion_port();
     config.state_port = emulator_.state_port();
     config.io_port = emulator_.io_port();
+    config.hses_port = emulator_.hses_port();
     config.armed = armed;
     config.rate = rate_;
     return config;

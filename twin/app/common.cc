@@ -93,10 +93,13 @@ Scenario LoadScenario(const std::vector<std::string>& files, const Common& commo
 }
 
 std::function<bool()> StopOnSignals() {
-  std::signal(SIGTERM, [](int) { g_stop = 1; });
-  std::signal(SIGINT, [](int) { g_stop = 1; });
+  const auto count = [](int) { g_stop = g_stop == 0 ? 1 : 2; };
+  std::signal(SIGTERM, count);
+  std::signal(SIGINT, count);
   return [] { return g_stop != 0; };
 }
+
+bool StopAtOnceOnSignals() { return g_stop > 1; }
 
 void Say(const Common& common, const std::string& line) {
   if (!common.quiet) std::fprintf(stderr, "%s\n", line.c_str());

@@ -44,6 +44,8 @@ Scenario LoadScenario(const std::vector<std::string>& files, const Common& commo
 
 /// From here on SIGTERM and SIGINT only ask for an end; the function tells whether they have.
 std::function<bool()> StopOnSignals();
+/// Whether more than one has come since: whoever asks twice wants the arm to stand.
+bool StopAtOnceOnSignals();
 
 /// A line to stderr unless quiet.
 void Say(const Common& common, const std::string& line);
@@ -83,6 +85,7 @@ void AddReplayVerb(CLI::App& app, Common& common);
 void AddRenderVerb(CLI::App& app, Common& common);
 void AddPartVerb(CLI::App& app, Common& common);
 void AddDoctorVerb(CLI::App& app, Common& common);
+void AddJogVerb(CLI::App& app, Common& common);
 void AddConfigVerb(CLI::App& app, Common& common);
 
 }  // namespace tubetwin

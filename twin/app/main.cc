@@ -36,6 +36,7 @@ int Run(int argc, char** argv) {
   AddRenderVerb(app, common);
   AddPartVerb(app, common);
   AddDoctorVerb(app, common);
+  AddJogVerb(app, common);
   AddConfigVerb(app, common);
   std::vector<std::string> words = HelpWords({argv + 1, argv + argc});
   const auto refuse = [](const std::string& why) {

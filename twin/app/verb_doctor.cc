@@ -42,14 +42,22 @@ std::vector<Examined> Examine() {
   return out;
 }
 
-/// Connects to the device of a role; `read` says what it tells.
+/// Connects to the device of a role; `read` says what it tells, its driver what else there is.
 template <class Role, class Read>
-Examined Look(const std::string& what, const Role& role, const DriverContext& context, Read read) {
-  if (!role.IsDevice()) return {what, role.driver, ""};
+void Look(const std::string& what, const Role& role, const DriverContext& context, Read read,
+          std::vector<Examined>& out) {
+  if (!role.IsDevice()) {
+    out.push_back({what, role.driver, ""});
+    return;
+  }
   try {
-    return {what, role.driver + ": " + read(*role.Connect(context)), ""};
+    const auto device = role.Connect(context);
+    out.push_back({what, role.driver + ": " + read(*device), ""});
+    for (const DeviceFinding& finding : role.Chosen().Examine(*device, context)) {
+      out.push_back({finding.what, finding.told, finding.fix});
+    }
   } catch (const Error& e) {
-    return {what, e.what(), role.Link().fix};
+    out.push_back({what, e.what(), role.Link().fix});
   }
 }
 
@@ -97,15 +105,21 @@ std::vector<Examined> ExamineCell(const Scenario& scenario) {
   DriverContext context = ScenarioContext(scenario, model, clock, CellPurpose::kLook);
   context.believed_X_NS = [] { return RigidTransform::Identity(); };
   std::vector<Examined> out;
-  out.push_back(Look("arm", cell.arm, context, [&](const Arm& arm) {
-    return Said(arm.State()) + (cell.arm.armed ? ", armed in the cell file" : "");
-  }));
-  out.push_back(Look("gripper", cell.gripper, context,
-                     [](const Gripper& gripper) { return Said(gripper.State()); }));
-  out.push_back(Look("force/torque sensor", cell.wrist, context,
-                     [](const ForceTorqueSensor& wrist) { return Said(wrist.Read()); }));
-  out.push_back(Look("scanner", cell.scanner, context,
-                     [&](const Scanner&) { return cell.scanner.Link().reached; }));
+  Look(
+      "arm", cell.arm, context,
+      [&](const Arm& arm) {
+        return Said(arm.State()) + (cell.arm.armed ? ", armed in the cell file" : "");
+      },
+      out);
+  Look(
+      "gripper", cell.gripper, context,
+      [](const Gripper& gripper) { return Said(gripper.State()); }, out);
+  Look(
+      "force/torque sensor", cell.wrist, context,
+      [](const ForceTorqueSensor& wrist) { return Said(wrist.Read()); }, out);
+  Look(
+      "scanner", cell.scanner, context, [&](const Scanner&) { return cell.scanner.Link().reached; },
+      out);
   return out;
 }
 

@@ -157,6 +157,7 @@ int Run(const RunOptions& run, const Common& common) {
   ProgressLine progress(!common.quiet);
   options.progress = [&](const std::string& text) { progress.Show(text); };
   options.stop_requested = StopOnSignals();
+  options.stop_at_once = StopAtOnceOnSignals;
   std::string story;
   const RoundResult result = RunAnywhere(run, scenario, options, story);
 

@@ -72,6 +72,7 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
     recorder.tape = &*cell_recorder;
   }
   Cell& cell = cell_recorder ? cell_recorder->cell() : plain;
+  cell.stop_at_once = options.stop_at_once;
   const RoundReport report = pipeline.held
                                  ? ResumeAttempt(cell, setup, pipeline.held->cycle, recorder)
                                  : RunPickCycle(cell, setup, recorder);

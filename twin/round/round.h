@@ -31,8 +31,9 @@ struct RoundOptions {
   bool force = false;  ///< Replace rows of another configuration.
   std::string program_version;
   std::function<void(const std::string&)>
-      progress;  ///< One line of where the round is; may be empty.
-  std::function<bool()> stop_requested;
+      progress;                          ///< One line of where the round is; may be empty.
+  std::function<bool()> stop_requested;  ///< Ends the round after the attempt under way.
+  std::function<bool()> stop_at_once;    ///< Ends it where the arm is, on its path.
   /// Makes the page of the finished result folder; empty: there is none. Pages are made in a room
   /// above this one, so whoever starts a round hands it in.
   std::function<void(const std::string& folder)> write_report;

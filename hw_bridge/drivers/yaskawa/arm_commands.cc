@@ -61,7 +61,7 @@ ArmState ArmSession::State() const {
   } else if (motion_) {
     state.mode = motion_->held_back() ? ArmMode::kHolding : ArmMode::kMoving;
     state.planned_s = motion_->stream().planned_s();
-  } else if (pending_) {
+  } else if (pending_ || alarm_ended_motion_) {
     state.mode = ArmMode::kMoving;
   } else if (const auto hindrance = Hindrance()) {
     state.mode = hindrance->mode;
@@ -74,7 +74,7 @@ ArmState ArmSession::State() const {
 
 std::optional<std::string> ArmSession::WhyNotStart(const JointTrajectory& trajectory) const {
   if (!lost_.empty()) return "arm is disconnected: " + lost_;
-  if (motion_ || pending_) return "arm is moving";
+  if (motion_ || pending_ || alarm_ended_motion_) return "arm is moving";
   if (!config_.armed) {
     return "arm is not armed: with cell.arm.armed = false nothing is sent to its motion port";
   }
@@ -139,7 +139,7 @@ CommandResult ArmSession::Recover() {
   if (!config_.armed) {
     return Rejected("arm is not armed: nothing is sent to its motion port");
   }
-  if (motion_ || pending_) return Rejected("the arm is moving");
+  if (motion_ || pending_ || alarm_ended_motion_) return Rejected("the arm is moving");
   if (Hindrance() && question_ != Question::kTrajectoryMode) recover_ = true;
   state_.done = true;
   return {};

@@ -213,7 +213,7 @@ void ArmSession::TakeAnswerToQuestion(const sm::MotionReply& reply) {
       latch_ = trouble;
     }
   } else if (!answered_ready_) {
-    Latch(TroubleOf(reply.subcode));
+    Latch(TroubleOf(reply.subcode), reply.subcode);
   } else if (pending_) {
     Latch(*pending_);
   }
@@ -224,7 +224,9 @@ void ArmSession::TakeAnswerToQuestion(const sm::MotionReply& reply) {
 }
 
 void ArmSession::TakeRefusal(const StreamedMotion::Problem& problem) {
-  if (problem.subcode != 0) return Latch({TroubleOf(problem.subcode).mode, problem.text});
+  if (problem.subcode != 0) {
+    return Latch({TroubleOf(problem.subcode).mode, problem.text}, problem.subcode);
+  }
   // A stop or an alarm may be what is behind it.
   DropMotion();
   pending_ = ArmTrouble{ArmMode::kFault, problem.text};
@@ -312,9 +314,23 @@ void ArmSession::DropMotion() {
                     Wall::now() + Limit(kAnswer_s));
 }
 
-void ArmSession::Latch(const ArmTrouble& trouble) {
-  if (!latch_ || Outweighs(trouble, *latch_)) latch_ = trouble;
+void ArmSession::Latch(const ArmTrouble& trouble, std::int32_t subcode) {
+  if (!latch_ || Outweighs(trouble, *latch_)) {
+    latch_ = trouble;
+    const std::int32_t code = status_ ? std::max(0, status_->error_code) : 0;
+    const bool alarm = code > 0 || subcode == static_cast<std::int32_t>(sm::NotReady::kAlarm);
+    if (alarm && trouble.mode == ArmMode::kFault && config_.hses_port != 0) {
+      unnamed_alarm_ = code;
+      alarm_ended_motion_ = motion_.has_value();
+    }
+  }
   DropMotion();
+}
+
+void ArmSession::NameAlarm(const std::string& name) {
+  unnamed_alarm_.reset();
+  alarm_ended_motion_ = false;
+  if (latch_ && !name.empty()) latch_->text += ": " + name;
 }
 
 void ArmSession::Lose(const std::string& why) {

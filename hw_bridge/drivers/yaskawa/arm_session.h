@@ -32,6 +32,13 @@ class ArmSession {
   /// Stops a motion, ends trajectory mode. At most 0.4 s.
   void Leave();
 
+  /// The number of an alarm whose name would be of use, 0 for whichever it is; the motion it ended
+  /// counts as running until NameAlarm(), with an empty name where nobody knows.
+  std::optional<std::int32_t> UnnamedAlarm() const { return unnamed_alarm_; }
+  void NameAlarm(const std::string& name);
+  /// What the encoders really have, in place of the configuration's word.
+  void UsePulses(double pulses_per_degree) { config_.pulses_per_degree = pulses_per_degree; }
+
   ArmState State() const;
   CommandResult Start(const CheckedTrajectory& trajectory);
   CommandResult Append(const CheckedTrajectory& continuation);
@@ -64,7 +71,8 @@ class ArmSession {
   void EndMotion(bool done);
   /// Clears what the controller still has of the motion.
   void DropMotion();
-  void Latch(const ArmTrouble& trouble);
+  /// `subcode`: what the controller said; an alarm's name is then asked for.
+  void Latch(const ArmTrouble& trouble, std::int32_t subcode = 0);
   void Lose(const std::string& why);
   std::optional<std::string> WhyNotStart(const JointTrajectory& trajectory) const;
   /// What hinders motion while none is under way.
@@ -89,6 +97,8 @@ class ArmSession {
   std::optional<ArmTrouble> latch_;
   /// What ended a motion, until the controller has said whether it knows more of it.
   std::optional<ArmTrouble> pending_;
+  std::optional<std::int32_t> unnamed_alarm_;
+  bool alarm_ended_motion_ = false;
   Question question_ = Question::kNone;
   bool recover_ = false;         ///< Somebody asked for it.
   bool answered_ready_ = false;  ///< The last question's answer.

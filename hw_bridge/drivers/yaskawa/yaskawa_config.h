@@ -11,12 +11,14 @@ struct YaskawaConfig {
   std::string host = "192.168.1.31";  ///< Factory address of the controller.
   int motion_port = 50240;            ///< TCP, simple_message.
   int state_port = 50241;
-  /// Not connected, for they offer nothing that Arm needs: inputs and outputs (TCP), high-speed
-  /// Ethernet server (UDP).
+  /// Inputs and outputs (TCP) and high-speed Ethernet server (UDP), for supervision: `doctor` reads
+  /// them; a session asks the latter for pulses and for the names of alarms. 0: there is none.
   int io_port = 50242, hses_port = 10040;
   /// What `emulate` serves on these ports: "motoros1" or "strict". Real controllers are the first.
   std::string server = "motoros1";
-  double pulses_per_degree = 1000;  ///< Of the coarsest axis: the controller compares starts in it.
+  /// Of the coarsest axis, for the controller compares starts in pulses: where supervision does not
+  /// tell them.
+  double pulses_per_degree = 1000;
   /// Without it nothing is sent: the motion port is not even connected. Not visited: the key of the
   /// same name concerns any arm.
   bool armed = false;

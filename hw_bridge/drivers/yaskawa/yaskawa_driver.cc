@@ -1,5 +1,6 @@
 #include "hw_bridge/drivers/yaskawa/yaskawa_driver.h"
 
+#include "hw_bridge/drivers/yaskawa/supervision.h"
 #include "hw_bridge/drivers/yaskawa/yaskawa_arm.h"
 
 namespace tubetwin {
@@ -25,6 +26,10 @@ void YaskawaDriver::Visit(ConfigVisitor& v) { config.Visit(v); }
 
 std::string YaskawaDriver::Address() const {
   return config.host + ":" + std::to_string(config.motion_port);
+}
+
+std::vector<DeviceFinding> YaskawaDriver::Examine(const Arm& device, const DriverContext&) const {
+  return Supervise(config, device.State().q);
 }
 
 std::unique_ptr<Arm> YaskawaDriver::Connect(const std::string&,

@@ -15,6 +15,8 @@ class YaskawaDriver : public DeviceDriver<Arm> {
   std::string Summary() const override;
   void Visit(ConfigVisitor& v) override;
   std::string Address() const override;
+  std::vector<DeviceFinding> Examine(const Arm& device,
+                                     const DriverContext& context) const override;
   std::unique_ptr<Arm> Connect(const std::string& link,
                                const DriverContext& context) const override;
 };
