@@ -92,7 +92,7 @@ def asked_twice_to_stop(folder):
     code, err = run.wait(20)
     check(time.monotonic() - began < 5.0, "a second Ctrl-C ends the round within 5 s")
     check(code == 75, f"and it was interrupted: {code} {err}")
-    check(run.summary()["end"] == "interrupted", f"the summary says so: {run.summary()}")
+    check(run.summary()["end_reason"] == "interrupted", f"the summary says so: {run.summary()}")
     check(events(emulation, "open") == opened, "the fingers were not opened")
     emulation.stop()
     check(emulation.world()["held_ids"] == [1], "the tube still hangs")

@@ -14,7 +14,7 @@ constexpr double kPeak = 1.5;  ///< Of a cubic from rest to rest, against its me
 constexpr double kShortest_s = 0.5, kPatience_s = 3.0;
 const double kThere_rad = Radians(0.05);
 
-CheckedTrajectory Turn(const ArmModel& model, const JointVector& q, const JogOptions& options) {
+CheckedTrajectory JogTurn(const ArmModel& model, const JointVector& q, const JogOptions& options) {
   TrajectoryPoint from, to;
   from.q = to.q = q;
   to.q[options.joint - 1] += Radians(options.degrees);
@@ -46,7 +46,7 @@ std::string Told(const ArmState& state) {
 
 JointVector Jog(Arm& arm, const ArmModel& model, CellClock& clock, const JogOptions& options) {
   RequireAllowed(options);
-  const CheckedTrajectory turn = Turn(model, arm.State().q, options);
+  const CheckedTrajectory turn = JogTurn(model, arm.State().q, options);
   const CommandResult started = arm.Start(turn);
   if (!started.accepted()) throw Error(ErrorKind::kDevice, "jog: " + started.reason);
   const TimeNs end = clock.Now() + FromSeconds(2.0 * turn.duration_s() + kPatience_s);
