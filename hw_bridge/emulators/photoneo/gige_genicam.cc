@@ -9,11 +9,37 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     ProductGuid="0" VersionGuid="0" xmlns="http://www.genicam.org/GenApi/Version_1_1">
 
   <Category Name="Root">
+    <pFeature>DeviceControl</pFeature>
     <pFeature>AcquisitionControl</pFeature>
     <pFeature>ImageFormatControl</pFeature>
     <pFeature>Scan3dControl</pFeature>
     <pFeature>TransportLayerControl</pFeature>
+    <pFeature>UserSetControl</pFeature>
+    <pFeature>PhotoneoControl</pFeature>
   </Category>
+
+  <Category Name="DeviceControl">
+    <pFeature>DeviceVendorName</pFeature>
+    <pFeature>DeviceModelName</pFeature>
+    <pFeature>DeviceVersion</pFeature>
+    <pFeature>DeviceManufacturerInfo</pFeature>
+    <pFeature>DeviceSerialNumber</pFeature>
+  </Category>
+  <StringReg Name="DeviceVendorName">
+    <Address>0x48</Address><Length>32</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
+  </StringReg>
+  <StringReg Name="DeviceModelName">
+    <Address>0x68</Address><Length>32</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
+  </StringReg>
+  <StringReg Name="DeviceVersion">
+    <Address>0x88</Address><Length>32</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
+  </StringReg>
+  <StringReg Name="DeviceManufacturerInfo">
+    <Address>0xa8</Address><Length>48</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
+  </StringReg>
+  <StringReg Name="DeviceSerialNumber">
+    <Address>0xd8</Address><Length>16</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
+  </StringReg>
 
   <Category Name="AcquisitionControl">
     <pFeature>AcquisitionMode</pFeature>
@@ -22,6 +48,7 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     <pFeature>TriggerSelector</pFeature>
     <pFeature>TriggerMode</pFeature>
     <pFeature>TriggerSource</pFeature>
+    <pFeature>TriggerActivation</pFeature>
     <pFeature>TriggerSoftware</pFeature>
   </Category>
   <Enumeration Name="AcquisitionMode">
@@ -29,7 +56,7 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     <pValue>AcquisitionModeReg</pValue>
   </Enumeration>
   <IntReg Name="AcquisitionModeReg">
-    <Address>0x12c</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Address>0xb000</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
     <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
   <Command Name="AcquisitionStart">
@@ -39,7 +66,7 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     <pValue>AcquisitionReg</pValue><CommandValue>0</CommandValue>
   </Command>
   <IntReg Name="AcquisitionReg">
-    <Address>0x124</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Address>0xb004</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
     <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
   <Enumeration Name="TriggerSelector">
@@ -47,7 +74,7 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     <pValue>TriggerSelectorReg</pValue>
   </Enumeration>
   <IntReg Name="TriggerSelectorReg">
-    <Address>0x410</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Address>0xb008</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
     <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
   <Enumeration Name="TriggerMode">
@@ -56,7 +83,7 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     <pValue>TriggerModeReg</pValue>
   </Enumeration>
   <IntReg Name="TriggerModeReg">
-    <Address>0x300</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Address>0xb00c</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
     <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
   <Enumeration Name="TriggerSource">
@@ -65,14 +92,23 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     <pValue>TriggerSourceReg</pValue>
   </Enumeration>
   <IntReg Name="TriggerSourceReg">
-    <Address>0x304</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Address>0xb010</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
+  </IntReg>
+  <Enumeration Name="TriggerActivation">
+    <EnumEntry Name="RisingEdge"><Value>0</Value></EnumEntry>
+    <EnumEntry Name="FallingEdge"><Value>1</Value></EnumEntry>
+    <pValue>TriggerActivationReg</pValue>
+  </Enumeration>
+  <IntReg Name="TriggerActivationReg">
+    <Address>0xb018</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
     <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
   <Command Name="TriggerSoftware">
     <pValue>TriggerSoftwareReg</pValue><CommandValue>1</CommandValue>
   </Command>
   <IntReg Name="TriggerSoftwareReg">
-    <Address>0x400</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Address>0xb014</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
     <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
 
@@ -86,12 +122,12 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
   </Category>
   <Integer Name="Width"><pValue>WidthReg</pValue></Integer>
   <IntReg Name="WidthReg">
-    <Address>0x100</Address><Length>4</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
+    <Address>0xb020</Address><Length>4</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
     <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
   <Integer Name="Height"><pValue>HeightReg</pValue></Integer>
   <IntReg Name="HeightReg">
-    <Address>0x104</Address><Length>4</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
+    <Address>0xb024</Address><Length>4</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
     <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
   <Enumeration Name="ComponentSelector">
@@ -99,14 +135,14 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     <pValue>ComponentSelectorReg</pValue>
   </Enumeration>
   <IntReg Name="ComponentSelectorReg">
-    <Address>0x404</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Address>0xb030</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
     <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
   <Boolean Name="ComponentEnable">
     <pValue>ComponentEnableReg</pValue><OnValue>1</OnValue><OffValue>0</OffValue>
   </Boolean>
   <IntReg Name="ComponentEnableReg">
-    <Address>0x408</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Address>0xb034</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
     <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
   <Integer Name="ComponentIDValue"><Value>4</Value></Integer>
@@ -115,7 +151,7 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     <pValue>PixelFormatReg</pValue>
   </Enumeration>
   <IntReg Name="PixelFormatReg">
-    <Address>0x128</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Address>0xb028</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
     <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
   </IntReg>
 
@@ -139,6 +175,96 @@ const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
     <pVariable Name="H">Height</pVariable>
     <Formula>W * H * 12</Formula>
   </IntSwissKnife>
+
+  <Category Name="UserSetControl">
+    <pFeature>UserSetSelector</pFeature>
+    <pFeature>UserSetLoad</pFeature>
+    <pFeature>UserSetSave</pFeature>
+    <pFeature>UserSetReset</pFeature>
+    <pFeature>UserSetDescription</pFeature>
+  </Category>
+  <Enumeration Name="UserSetSelector">
+    <EnumEntry Name="Default"><Value>0</Value></EnumEntry>
+    <EnumEntry Name="UserSet0"><Value>1</Value></EnumEntry>
+    <EnumEntry Name="UserSet1"><Value>2</Value></EnumEntry>
+    <pValue>UserSetSelectorReg</pValue>
+  </Enumeration>
+  <IntReg Name="UserSetSelectorReg">
+    <Address>0xb0a0</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
+  </IntReg>
+  <Command Name="UserSetLoad">
+    <pValue>UserSetLoadReg</pValue><CommandValue>1</CommandValue>
+  </Command>
+  <IntReg Name="UserSetLoadReg">
+    <Address>0xb0a4</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
+  </IntReg>
+  <Command Name="UserSetSave">
+    <pValue>UserSetSaveReg</pValue><CommandValue>1</CommandValue>
+  </Command>
+  <IntReg Name="UserSetSaveReg">
+    <Address>0xb0a8</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
+  </IntReg>
+  <Command Name="UserSetReset">
+    <pValue>UserSetResetReg</pValue><CommandValue>1</CommandValue>
+  </Command>
+  <IntReg Name="UserSetResetReg">
+    <Address>0xb0ac</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
+  </IntReg>
+  <StringReg Name="UserSetDescription">
+    <Address>0xb200</Address><Length>64</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Cachable>NoCache</Cachable>
+  </StringReg>
+
+  <Category Name="PhotoneoControl">
+    <pFeature>OperationMode</pFeature>
+    <pFeature>CameraExposure</pFeature>
+    <pFeature>CameraTextureSource</pFeature>
+    <pFeature>NormalsEstimationRadius</pFeature>
+    <pFeature>EnableJumboFrames</pFeature>
+  </Category>
+  <Enumeration Name="OperationMode">
+    <EnumEntry Name="Scanner"><Value>0</Value></EnumEntry>
+    <EnumEntry Name="Camera"><Value>1</Value></EnumEntry>
+    <pValue>OperationModeReg</pValue>
+  </Enumeration>
+  <IntReg Name="OperationModeReg">
+    <Address>0xb240</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
+  </IntReg>
+  <Float Name="CameraExposure">
+    <pValue>CameraExposureReg</pValue><Min>10.24</Min><Max>100.352</Max><Unit>ms</Unit>
+  </Float>
+  <FloatReg Name="CameraExposureReg">
+    <Address>0xb244</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Cachable>NoCache</Cachable><Endianess>BigEndian</Endianess>
+  </FloatReg>
+  <Enumeration Name="CameraTextureSource">
+    <EnumEntry Name="Laser"><Value>0</Value></EnumEntry>
+    <EnumEntry Name="LED"><Value>1</Value></EnumEntry>
+    <pValue>CameraTextureSourceReg</pValue>
+  </Enumeration>
+  <IntReg Name="CameraTextureSourceReg">
+    <Address>0xb248</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
+  </IntReg>
+  <Integer Name="NormalsEstimationRadius">
+    <pValue>NormalsEstimationRadiusReg</pValue><Min>0</Min><Max>4</Max>
+  </Integer>
+  <IntReg Name="NormalsEstimationRadiusReg">
+    <Address>0xb24c</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
+  </IntReg>
+  <Boolean Name="EnableJumboFrames">
+    <pValue>EnableJumboFramesReg</pValue><OnValue>1</OnValue><OffValue>0</OffValue>
+  </Boolean>
+  <IntReg Name="EnableJumboFramesReg">
+    <Address>0xb250</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
+    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
+  </IntReg>
 
   <Port Name="Device"></Port>
 </RegisterDescription>

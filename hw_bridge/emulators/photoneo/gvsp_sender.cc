@@ -1,5 +1,8 @@
 #include "hw_bridge/emulators/photoneo/gvsp_sender.h"
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <algorithm>
 #include <array>
 #include <asio.hpp>
@@ -7,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -21,7 +25,8 @@ using SteadyClock = std::chrono::steady_clock;
 // Fits into the buffer that every UDP socket has at first (208 KiB with the kernel's own overhead),
 // twice over.
 constexpr std::size_t kBurst = 64000;
-constexpr auto kMaxSilence = std::chrono::seconds(2);
+/// A client whose port keeps as much as that for so long reads elsewhere.
+constexpr auto kMaxSilence = std::chrono::milliseconds(500);
 constexpr double kEthernetBytesPerS = 100e6;
 
 /// Bytes that wait to be read at a UDP port of this machine; nothing when nobody has it.
@@ -50,61 +55,110 @@ struct GvspSender::Impl {
       throw Error(ErrorKind::kDevice, "emulated scanner (GigE Vision): no port of " + listen +
                                           " for frames: " + error.message());
     }
+    // Packets are as large as was agreed on, or are not sent.
+    const int whole = IP_PMTUDISC_DO;
+    ::setsockopt(socket.native_handle(), IPPROTO_IP, IP_MTU_DISCOVER, &whole, sizeof whole);
   }
 
   /// Waits until the client can take a burst; false when there is no hope.
-  bool AwaitRoom(const GvspClient& to, bool loopback, const std::atomic<bool>& stop) {
-    if (!loopback) {
-      const auto burst = std::chrono::duration<double>(kBurst / kEthernetBytesPerS);
-      std::this_thread::sleep_for(burst);
-      return !stop;
-    }
+  bool AwaitRoom(const GvspClient& to, const std::atomic<bool>& stop) {
     const auto began = SteadyClock::now();
-    while (!stop && SteadyClock::now() - began < kMaxSilence) {
+    while (!by_time && !stop) {
       const std::optional<unsigned long> unread = Unread(to);
       if (!unread) return false;
       if (*unread < kBurst) return true;
+      by_time = SteadyClock::now() - began > kMaxSilence;
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
-    return false;
+    const auto burst = std::chrono::duration<double>(kBurst / kEthernetBytesPerS);
+    std::this_thread::sleep_for(burst);
+    return !stop;
+  }
+
+  static std::size_t Room(const Frame& frame) { return frame.packet_size - kGvspOverhead; }
+  /// Of the payload; the leader comes before them, the trailer after them.
+  static std::size_t Packets(const Frame& frame) {
+    return (frame.bytes.size() + Room(frame) - 1) / Room(frame);
+  }
+
+  /// False: it cannot be sent.
+  bool Put(const Frame& frame, std::size_t packet, const udp::endpoint& client) {
+    asio::error_code error;
+    const auto put = [&](const auto& bytes) { socket.send_to(bytes, client, 0, error); };
+    const auto id = static_cast<std::uint32_t>(packet);
+    if (packet == 0) {
+      put(asio::buffer(EncodeGvspLeader(frame.image)));
+    } else if (packet > Packets(frame)) {
+      put(asio::buffer(EncodeGvspTrailer(frame.image, id)));
+    } else {
+      const std::string header = EncodeGvspPayloadHeader(frame.image.frame_id, id);
+      const std::size_t at = (packet - 1) * Room(frame);
+      put(std::array<asio::const_buffer, 2>{
+          asio::buffer(header),
+          asio::buffer(frame.bytes.data() + at, std::min(Room(frame), frame.bytes.size() - at))});
+    }
+    return !error;
   }
 
   asio::io_context io;
   udp::socket socket;
+  bool by_time = false;  ///< The client's port does not tell how fast it reads.
+  std::mutex mutex;      ///< Of `newest`.
+  std::shared_ptr<const Frame> newest;
 };
 
 GvspSender::GvspSender(const std::string& listen) : impl_(std::make_unique<Impl>(listen)) {}
 GvspSender::~GvspSender() = default;
 
-void GvspSender::Send(const Frame& frame, const GvspClient& to, const std::atomic<bool>& stop) {
+void GvspSender::Send(Frame given, const GvspClient& to, const std::atomic<bool>& stop) {
   constexpr std::size_t kMaxDatagram = 65000;
-  if (frame.packet_size <= kGvspOverhead || frame.packet_size > kMaxDatagram) return;
+  if (given.packet_size <= kGvspOverhead || given.packet_size > kMaxDatagram) return;
+  const auto frame = std::make_shared<const Frame>(std::move(given));
+  {
+    const std::lock_guard lock(impl_->mutex);
+    // What was held back on purpose stays lost.
+    impl_->newest = frame->sent_share < 1.0 ? nullptr : frame;
+  }
   const asio::ip::address_v4 address(to.address);
   const udp::endpoint client(address, static_cast<std::uint16_t>(to.port));
-  asio::error_code error;
-  const auto put = [&](const auto& bytes) { impl_->socket.send_to(bytes, client, 0, error); };
-
-  put(asio::buffer(EncodeGvspLeader(frame.image)));
-  const std::size_t room = frame.packet_size - kGvspOverhead;
-  const std::size_t packets = (frame.bytes.size() + room - 1) / room;
-  const auto sent_packets = static_cast<std::size_t>(
-      std::floor(std::clamp(frame.sent_share, 0.0, 1.0) * static_cast<double>(packets)));
+  impl_->by_time = !address.is_loopback();
+  const std::size_t packets = Impl::Packets(*frame);
+  const auto sent = static_cast<std::size_t>(
+      std::floor(std::clamp(frame->sent_share, 0.0, 1.0) * static_cast<double>(packets)));
+  bool ok = impl_->Put(*frame, 0, client);
   std::size_t burst = kBurst;  // The client makes room when it sees the leader.
-  for (std::size_t i = 0; i < sent_packets && !error; ++i) {
-    if (burst + frame.packet_size > kBurst) {
-      if (!impl_->AwaitRoom(to, address.is_loopback(), stop)) return;
+  for (std::size_t packet = 1; packet <= sent && ok; ++packet) {
+    if (burst + frame->packet_size > kBurst) {
+      if (!impl_->AwaitRoom(to, stop)) return;
       burst = 0;
     }
-    burst += frame.packet_size;
-    const std::string header =
-        EncodeGvspPayloadHeader(frame.image.frame_id, static_cast<std::uint32_t>(i + 1));
-    const std::size_t at = i * room;
-    put(std::array<asio::const_buffer, 2>{
-        asio::buffer(header),
-        asio::buffer(frame.bytes.data() + at, std::min(room, frame.bytes.size() - at))});
+    burst += frame->packet_size;
+    ok = impl_->Put(*frame, packet, client);
   }
-  if (sent_packets < packets) return;
-  put(asio::buffer(EncodeGvspTrailer(frame.image, static_cast<std::uint32_t>(packets + 1))));
+  if (sent == packets && ok) impl_->Put(*frame, packets + 1, client);
+}
+
+void GvspSender::SendAgain(std::uint16_t frame_id, std::uint32_t first, std::uint32_t last,
+                           const GvspClient& to) {
+  std::shared_ptr<const Frame> frame;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    frame = impl_->newest;
+  }
+  if (!frame || frame->image.frame_id != frame_id) return;
+  const udp::endpoint client(asio::ip::address_v4(to.address), static_cast<std::uint16_t>(to.port));
+  const std::size_t end = std::min<std::size_t>(last, Impl::Packets(*frame) + 1);
+  for (std::size_t packet = first; packet <= end; ++packet) impl_->Put(*frame, packet, client);
+}
+
+void GvspSender::SendTestPacket(const GvspClient& to, std::uint32_t packet_size) {
+  constexpr std::uint32_t kIpAndUdp = 20 + 8;
+  if (packet_size <= kIpAndUdp) return;
+  const std::string bytes(packet_size - kIpAndUdp, '\0');
+  asio::error_code too_large;
+  impl_->socket.send_to(asio::buffer(bytes),
+                        {asio::ip::address_v4(to.address), static_cast<std::uint16_t>(to.port)}, 0,
+                        too_large);
 }
 
 }  // namespace tubetwin

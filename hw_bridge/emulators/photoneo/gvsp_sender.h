@@ -18,8 +18,9 @@ struct GvspClient {
 };
 
 /// Sends image frames by GVSP, at the speed that the client can take: over Ethernet 100 MB/s, which
-/// is what its wire holds; on loopback, where nothing else holds the sender back and lost packets
-/// are not sent again, as fast as the client reads (the kernel tells how much waits at its port).
+/// is what its wire holds; on loopback, where nothing else holds the sender back, as fast as the
+/// client reads (the kernel tells how much waits at its port). A client that takes packets past its
+/// port, as aravis does for root, leaves there what comes: to this one they go as over Ethernet.
 class GvspSender {
  public:
   /// From a free port of `listen`. Throws Error(kDevice) when there is none.
@@ -32,9 +33,15 @@ class GvspSender {
     std::uint32_t packet_size = 0;  ///< As agreed on, with all headers.
     double sent_share = 1.0;        ///< Of the payload packets, from the first one on.
   };
-  /// Sends all of the frame. Returns early when `stop` is set, or the client has closed its port or
-  /// not read for 2 s. Any thread, one frame at a time.
-  void Send(const Frame& frame, const GvspClient& to, const std::atomic<bool>& stop);
+  /// Sends all of the frame. Returns early when `stop` is set, or the client has closed its port.
+  /// Any thread, one frame at a time.
+  void Send(Frame frame, const GvspClient& to, const std::atomic<bool>& stop);
+  /// Packets of the newest frame again, of those that were meant to be sent; others are left out.
+  /// Any thread.
+  void SendAgain(std::uint16_t frame_id, std::uint32_t first, std::uint32_t last,
+                 const GvspClient& to);
+  /// One packet of that size with all headers, not to be cut in pieces on its way. Any thread.
+  void SendTestPacket(const GvspClient& to, std::uint32_t packet_size);
 
  private:
   struct Impl;

@@ -45,8 +45,8 @@ std::uint16_t NextFrame(std::uint16_t frame_id) {
 ScannerGigeEmulator::ScannerGigeEmulator(Scanner& scanner, const ScannerGigeConfig& config)
     : scanner_(scanner),
       config_(config),
-      camera_(config.listen, config.width, config.height),
-      sender_(config.listen) {}
+      sender_(config.listen),
+      camera_(config.listen, config.width, config.height, sender_) {}
 
 ScannerGigeEmulator::~ScannerGigeEmulator() { stop_sending_ = true; }  // The futures wait.
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hw_bridge/cell/devices.h"
-#include "hw_bridge/emulators/photoneo/gige_fake_camera.h"
+#include "hw_bridge/emulators/photoneo/gige_control.h"
 #include "hw_bridge/emulators/photoneo/scanner_emulator.h"
 
 namespace tubetwin {
@@ -21,13 +21,13 @@ struct ScannerGigeConfig {
 
 /// A PhoXi on GigE Vision over any Scanner: software trigger in, range image Coord3D_ABC32f in
 /// millimetres out, 0 0 0 where nothing was seen, no pose and no labels. For its traffic on the
-/// network, and for the networks that it must be kept from, see GigeFakeCamera.
+/// network, and for the networks that it must be kept from, see GigeControl.
 ///
 /// A trigger starts a scan; one that comes during a scan discards that scan and starts another
 /// after it. What is left to compute, and the sending, run on a thread of their own, one scan at a
-/// time; the destructor waits for it. Lost packets are not sent again. A scan that cannot be had
-/// (refusal, failure, a cloud of another size) is never answered, as GigE Vision has no word for
-/// it: see last_problem(). A frozen link keeps its heartbeat, which is aravis's own.
+/// time; the destructor waits for it. Lost packets are sent again on request. A scan that cannot be
+/// had (refusal, failure, a cloud of another size) is never answered, as GigE Vision has no word
+/// for it: see last_problem(). A frozen link keeps its heartbeat.
 class ScannerGigeEmulator : public ScannerEmulator {
  public:
   /// `scanner` must outlive it. Throws Error(kDevice) when the address or its port cannot be had.
@@ -54,8 +54,8 @@ class ScannerGigeEmulator : public ScannerEmulator {
 
   Scanner& scanner_;
   ScannerGigeConfig config_;
-  GigeFakeCamera camera_;
   GvspSender sender_;
+  GigeControl camera_;
 
   Stage stage_ = Stage::kIdle;
   GvspClient client_;  ///< Who wanted the scan that runs.
