@@ -66,12 +66,15 @@ const char kHead[] =
 const std::string kData = Bytes({0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f});
 const std::string kHeadText = kHead;
 
-std::string Changed(const std::string& from, const std::string& to,
-                    const std::string& rest = "ascii\n0.1 0.2 0.3\n0.4 0.5 0.6\n") {
-  std::string text = kHeadText + rest;
+std::string Replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   REQUIRE(at != std::string::npos);
   return text.replace(at, from.size(), to);
+}
+
+std::string Changed(const std::string& from, const std::string& to,
+                    const std::string& rest = "ascii\n0.1 0.2 0.3\n0.4 0.5 0.6\n") {
+  return Replaced(kHeadText + rest, from, to);
 }
 
 /// Both points of all these files, and nothing else.
@@ -210,6 +213,14 @@ TEST_CASE("A column that nobody needs stops nothing", "[unit]") {
                  "DATA ascii\n0.1 0.2 0.3 7\n0.4 0.5 0.6 8\n");
   CheckTwoPoints("FIELDS rgb x y z rgb\n" + std::string(kPoints) +
                  "DATA ascii\n1 0.1 0.2 0.3 2\n1 0.4 0.5 0.6 2\n");
+  // PCL goes back by padding where fields are not named in the order of their places.
+  const std::string back =
+      "FIELDS y _ z _ x _\nSIZE 4 1 4 1 4 1\nTYPE F U F U F U\nCOUNT 1 8 1 -8 1 4\n" +
+      std::string(kPoints) + "DATA binary\n";
+  CheckTwoPoints(back + Bytes({0.2f, 7.0f, 0.1f, 0.3f, 0.5f, 7.0f, 0.4f, 0.6f}));
+  CheckBad(Replaced(back, "-8", "-20"), "goes back before the point's beginning");
+  CheckBad(Replaced(back, "COUNT 1 8 1 -8 1 4", "COUNT 1 8 1 -8 1 0"), "ends behind its point");
+  CheckBad(Replaced(back, "COUNT 1", "COUNT -1"), "COUNT of field 'y' is '-1'");
   // A bad word in a column that could be ours drops that column whole.
   const OrganizedCloud cloud =
       Read("FIELDS x y z label intensity\nSIZE 4 4 4 4 4\nTYPE F F F U F\n" + std::string(kPoints) +

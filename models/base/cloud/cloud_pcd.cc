@@ -101,14 +101,15 @@ void ReadCompressed(CloudFile& file, const PcdHeader& header, OrganizedCloud& cl
         begin, "the compressed data has " + std::to_string(packed_size) + " bytes, the file only " +
                    std::to_string(file.size() - file.position()) + " more: it is cut off");
   }
-  std::size_t padding = 0;
-  for (const PcdField& field : header.fields) padding += field.name == "_" ? field.bytes() : 0;
-  const std::uint64_t whole = cloud.size() * header.record_size;
-  const std::uint64_t bare = cloud.size() * (header.record_size - padding);
+  std::uint64_t whole = 0, bare = 0;
+  for (const PcdField& field : header.fields) {
+    whole += cloud.size() * field.bytes();
+    bare += field.name == "_" ? 0 : cloud.size() * field.bytes();
+  }
   if (size != whole && size != bare) {
     file.FailByte(begin, "the compressed data unpacks to " + std::to_string(size) +
                              " bytes, POINTS " + std::to_string(header.points) + " of " +
-                             std::to_string(header.record_size) + " bytes each need " +
+                             std::to_string(whole / cloud.size()) + " bytes each need " +
                              std::to_string(whole));
   }
   std::string packed(packed_size, '\0');

@@ -76,7 +76,8 @@ void ParsePerField(const CloudFile& file, const std::string& key, const Words& w
       field.type = words[i].size() == 1 ? std::string(1, static_cast<char>(words[i][0] & ~0x20))
                                         : std::string(words[i]);
     } else {
-      field.count = static_cast<int>(HeaderInteger(file, name, words[i], 0, kMost));
+      const std::int64_t least = field.name == "_" ? -kMost : 0;
+      field.count = static_cast<int>(HeaderInteger(file, name, words[i], least, kMost));
     }
   }
 }
@@ -139,11 +140,19 @@ void FinishHeader(const CloudFile& file, const Seen& seen, bool old, PcdHeader& 
   }
   RequireCoordinates(file, header);
   FinishShape(file, seen, header);
+  std::int64_t offset = 0;
   for (PcdField& field : header.fields) {
-    field.offset = header.record_size;
+    field.offset = static_cast<std::size_t>(std::max<std::int64_t>(offset, 0));
     field.column = header.columns;
-    header.record_size += field.bytes();
-    header.columns += field.count;
+    offset += std::int64_t{field.size} * field.count;
+    if (offset < 0) file.FailLine("COUNT of padding '_' goes back before the point's beginning");
+    header.columns += std::max(field.count, 0);
+  }
+  header.record_size = static_cast<std::size_t>(offset);
+  for (const PcdField& field : header.fields) {
+    if (field.offset + field.bytes() > header.record_size) {
+      file.FailLine("field " + Quoted(field.name) + " ends behind its point, by the COUNT of '_'");
+    }
   }
 }
 

@@ -15,11 +15,14 @@ struct PcdField {
   std::string name;
   std::string type = "F";
   int size = 4;
-  int count = 1;  ///< 0: takes no place in the data, as some lidars' padding "_" is written.
+  /// 0 takes no place in the data; PCL also writes padding "_" of a negative count, which goes
+  /// back, where fields are not named in the order of their places.
+  int count = 1;
   std::size_t offset = 0;  ///< Of its first element in a binary record.
   int column = 0;          ///< Of its first element in an ascii record.
 
-  std::size_t bytes() const { return static_cast<std::size_t>(size) * count; }
+  /// In the data of its own, without going back.
+  std::size_t bytes() const { return static_cast<std::size_t>(size) * (count > 0 ? count : 0); }
 };
 
 enum class PcdData { kAscii, kBinary, kCompressed };
