@@ -1,5 +1,7 @@
 #include "perception/perceive.h"
 
+#include <cstdio>
+
 #include "models/base/error.h"
 #include "models/base/step_timer.h"
 #include "perception/fragment/axis_points.h"
@@ -14,6 +16,7 @@
 #include "perception/scene/bin_state.h"
 #include "perception/scene/coverage.h"
 #include "perception/scene/unexplained.h"
+#include "perception/view/coarse_cloud.h"
 #include "perception/view/registration.h"
 #include "perception/view/view_raster.h"
 
@@ -26,11 +29,34 @@ constexpr double kOutside = 0.6;
 constexpr double kLongestGap = 0.65;
 
 struct Surface {
+  std::vector<OrganizedCloud> smoothed;  ///< Of coarse views.
+  std::string grain;                     ///< What a user should know of them; empty: none.
   Registration registration;
   std::vector<ViewImage> views;
   std::vector<SurfacePoint> points;
   std::vector<Eigen::Vector3f> rejected_N;
 };
+
+/// Puts a smoothed view in the place of each coarse one. Throws Error(kBadData) for one that is too
+/// coarse for that.
+void SmoothCoarseViews(std::vector<ViewRaster>& rasters, double radius_m, double pitch_m,
+                       Parallelism parallelism, Surface& out) {
+  out.smoothed.resize(rasters.size());
+  for (std::size_t k = 0; k < rasters.size(); ++k) {
+    const CloudGrain grain = MeasureGrain(rasters[k]);
+    if (!IsCoarse(grain, rasters[k], radius_m)) continue;
+    const std::string view = rasters.size() > 1 ? "view " + std::to_string(k) + ": " : "";
+    const std::string why = TooCoarse(grain, radius_m);
+    if (!why.empty()) throw Error(ErrorKind::kBadData, "perception: " + view + why);
+    out.smoothed[k] = SmoothCoarse(rasters[k], grain, radius_m, parallelism);
+    rasters[k] = MakeViewRaster(out.smoothed[k], pitch_m);
+    char text[120];
+    std::snprintf(text, sizeof text,
+                  "points %.1f mm apart with %.1f mm of noise were smoothed before modelling",
+                  1e3 * grain.spacing_m, 1e3 * grain.noise_m);
+    if (out.grain.empty()) out.grain = view + text;
+  }
+}
 
 Surface ExtractSurface(const std::vector<OrganizedCloud>& clouds, const Part& part, const Bin& bin,
                        const PerceptionConfig& config, Parallelism parallelism) {
@@ -42,6 +68,7 @@ Surface ExtractSurface(const std::vector<OrganizedCloud>& clouds, const Part& pa
     const auto k = static_cast<std::size_t>(i);
     rasters[k] = MakeViewRaster(clouds[k], pitch_m);
   });
+  SmoothCoarseViews(rasters, part.radius_m, pitch_m, parallelism, out);
   if (config.register_views) out.registration = RegisterViews(rasters, bin, parallelism);
   for (std::size_t k = 0; k < rasters.size(); ++k) {
     if (config.register_views) rasters[k].X_NS = rasters[k].X_NS * out.registration.X_SbelievedS[k];
@@ -96,6 +123,7 @@ void AddWarnings(const Surface& surface, const std::vector<Fragment>& fragments,
   }
   const std::string text = RegistrationWarning(surface.registration);
   if (!text.empty()) scene.warnings.push_back(text);
+  if (!surface.grain.empty()) scene.warnings.push_back(surface.grain);
 }
 
 }  // namespace

@@ -38,6 +38,8 @@ constexpr double kFloorSquare_m = 0.02, kSeenFloorShare = 0.05;
 constexpr double kBelowFloor = 0.01, kSeenThrough_m = 0.06, kPiece_m = 0.02;
 constexpr int kFewestThrough = 4;
 constexpr std::size_t kAsked = 60000;  ///< Points that are asked.
+/// A wall this close to where the bin's would be, by a pose that may be a little off, is the bin's.
+constexpr double kInPlace_m = 0.006;
 /// Distance of two walls that is another than the bin's.
 constexpr double kOtherSize_m = 0.005;
 
@@ -340,6 +342,25 @@ std::string WrongSize(const BinView::Walls& walls, const Bin& bin) {
     }
   }
   return {};
+}
+
+BinView::Walls WithoutSides(const BinView::Walls& walls, const Bin& bin) {
+  std::array<bool, 2> in_place{};
+  const auto side_of = [&](const WallLine& line) {
+    return SideFacing(DirectionOf(walls.lines.yaw_rad, line.direction));
+  };
+  for (const WallLine& line : walls.lines.lines) {
+    const std::size_t side = side_of(line);
+    if (side > 3) continue;
+    const double half_m = side < 2 ? bin.half_x_m() : bin.half_y_m();
+    in_place[side / 2] |= std::abs(-line.offset_m - half_m) < kInPlace_m;
+  }
+  BinView::Walls out = walls;
+  std::erase_if(out.lines.lines, [&](const WallLine& line) {
+    const std::size_t side = side_of(line);
+    return side > 3 || in_place[side / 2];
+  });
+  return out;
 }
 
 std::array<bool, 4> TurnedWalls(const std::array<bool, 4>& walls, const RigidTransform& turn) {

@@ -54,6 +54,10 @@ bool IsSound(const BinFit& fit, const Bin& bin);
 /// is the bin's.
 std::string WrongSize(const BinView::Walls& walls, const Bin& bin);
 
+/// The walls of P = N without those parallel to a side of the bin that is seen in its place: that
+/// size is right, and what faces it is no wall of another bin.
+BinView::Walls WithoutSides(const BinView::Walls& walls, const Bin& bin);
+
 /// The walls' names after N was turned about z by a multiple of 90 degrees: p_new = turn * p_old.
 std::array<bool, 4> TurnedWalls(const std::array<bool, 4>& walls, const RigidTransform& turn);
 

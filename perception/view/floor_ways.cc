@@ -16,6 +16,7 @@ namespace tubetwin {
 namespace {
 
 constexpr std::size_t kMaxFitPoints = 300000;
+constexpr std::size_t kMaxCheckPoints = 120000;
 constexpr int kMaxPlanes = 3;  ///< Floor, a table around the bin, one more.
 /// Where a cloud's scanner is not known it is taken to be this far over the bin.
 constexpr double kOver_m = 1.5;
@@ -27,7 +28,7 @@ constexpr double kSquareBin_m = 0.001;
 /// A plane with less floor in the bin than this share of another's is a table beside it.
 constexpr double kLeastFloor = 0.3;
 
-Sighting Thinned(const std::vector<OrganizedCloud>& clouds) {
+Sighting Thinned(const std::vector<OrganizedCloud>& clouds, std::size_t max_points) {
   Sighting out;
   for (std::size_t v = 0; v < clouds.size(); ++v) {
     const OrganizedCloud& cloud = clouds[v];
@@ -37,7 +38,7 @@ Sighting Thinned(const std::vector<OrganizedCloud>& clouds) {
     for (const auto& p : cloud.p_SP) {
       if (IsValid(p)) valid.push_back(cloud.X_NS * p.cast<double>());
     }
-    const std::size_t keep = std::min(valid.size(), kMaxFitPoints / clouds.size());
+    const std::size_t keep = std::min(valid.size(), max_points / clouds.size());
     for (std::size_t i = 0; i < keep; ++i) {
       // By golden-ratio steps, so that no raster's columns are preferred.
       const double share = std::fmod(0.6180339887498949 * static_cast<double>(i), 1.0);
@@ -145,13 +146,20 @@ class Search {
 }  // namespace
 
 FloorWays FindFloorWays(const std::vector<OrganizedCloud>& clouds, const Bin& bin) {
-  const Sighting sighting = Thinned(clouds);
+  const Sighting sighting = Thinned(clouds, kMaxFitPoints);
   Search search(bin);
   for (const FloorPlane& plane :
        FindPlanes(sighting, kMaxPlanes, RandomStream(1, 0, "floor pose"))) {
     search.Add(ViewOnPlane(sighting, plane, bin));
   }
   return search.Result();
+}
+
+std::string OtherBinSeen(const std::vector<OrganizedCloud>& clouds, const Bin& bin) {
+  const BinView view = ViewOnPlane(Thinned(clouds, kMaxCheckPoints), FloorPlane{}, bin);
+  const std::string size = WrongSize(WithoutSides(view.walls, bin), bin);
+  return size.empty() ? size
+                      : size + "; the bin given is " + SizeText(bin) + ": check --bin and the pose";
 }
 
 std::vector<RigidTransform> TurnsOf(const Bin& bin) {

@@ -26,6 +26,10 @@ struct FloorWays {
 /// Lays the bin on floor and walls in clouds whose X_NS are their poses in C. Deterministic.
 FloorWays FindFloorWays(const std::vector<OrganizedCloud>& clouds, const Bin& bin);
 
+/// What the walls seen say about another bin than the given one, of clouds whose X_NS are known:
+/// two that face each other, neither of them where a wall of the bin would be. Empty: nothing.
+std::string OtherBinSeen(const std::vector<OrganizedCloud>& clouds, const Bin& bin);
+
 /// The turns of N about its z that neither floor nor walls tell apart: half a turn, of a square bin
 /// each quarter. The first is none.
 std::vector<RigidTransform> TurnsOf(const Bin& bin);

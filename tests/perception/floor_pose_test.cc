@@ -4,6 +4,7 @@
 #include <string>
 
 #include "models/base/error.h"
+#include "perception/view/floor_ways.h"
 #include "tests/support/catch.h"
 #include "tests/support/toy_scanner.h"
 
@@ -151,6 +152,24 @@ TEST_CASE("Another bin than the one given is told by what is seen of it", "[unit
   CHECK_THAT(why({0.77, 0.50, 0.12}), Catch::Contains("m apart are seen"));
   CHECK_THAT(why({0.77, 0.65, 0.12}), Catch::Contains("m apart are seen"));
   CHECK_THAT(why({0.77, 0.58, 0.06}), Catch::Contains("m high; the bin given is"));
+}
+
+TEST_CASE("Walls that are not where the given bin has its own are told of posed views", "[unit]") {
+  RandomStream stream(10, 0, "floor pose test");
+  ToyScene scene = SomeScene(stream, {0.77, 0.58, 0.12}, 3);
+  // A box is no wall: the bin's own are in their place.
+  scene.boxes.push_back({{0.2, -0.1, 0.0}, {0.3, 0.1, 0.1}});
+  const OrganizedCloud cloud = ToyScan(scene, Camera(), LookDown({0, 0, 1.2}), stream.Fork("all"));
+  const auto other = [&](const std::array<double, 3>& size_m) {
+    Bin given;
+    given.size_m = size_m;
+    return OtherBinSeen({cloud}, given);
+  };
+  CHECK(other({0.77, 0.58, 0.12}).empty());
+  CHECK_THAT(
+      other({0.80, 0.58, 0.12}),
+      Catch::Contains("m apart are seen; the bin given is 0.8 x 0.58 x 0.12 m: check --bin"));
+  CHECK_THAT(other({0.77, 0.50, 0.12}), Catch::Contains("two walls 0.580 m apart are seen"));
 }
 
 TEST_CASE("A square bin leaves a quarter turn open, another half a turn", "[unit]") {

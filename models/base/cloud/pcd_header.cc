@@ -35,8 +35,11 @@ RigidTransform ParseViewpoint(const CloudFile& file, const Words& words) {
   const double norm = std::sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6]);
   constexpr double kUnitTolerance = 1e-3;  // Files with four decimals pass, a wrong order does not.
   if (!(std::abs(norm - 1.0) <= kUnitTolerance)) {
+    std::string unit;
+    for (int i = 3; i < 7 && norm > 0; ++i) unit += " " + Number(v[i] / norm);
     file.FailLine("VIEWPOINT's quaternion (qw qx qy qz) has norm " + Number(norm) +
-                  ", allowed is 1 within " + Number(kUnitTolerance));
+                  ", allowed is 1 within " + Number(kUnitTolerance) +
+                  (unit.empty() ? "" : "; of that direction:" + unit));
   }
   return MakeTransform(RotationFromWxyz(v[3], v[4], v[5], v[6]), {v[0], v[1], v[2]});
 }

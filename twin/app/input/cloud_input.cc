@@ -9,6 +9,7 @@
 #include "models/base/foreign/length_unit.h"
 #include "models/base/text.h"
 #include "perception/view/bin_evidence.h"
+#include "perception/view/floor_ways.h"
 #include "twin/app/input/file_advice.h"
 #include "twin/app/input/view_pose.h"
 
@@ -56,9 +57,8 @@ void RequireBinSeen(const std::vector<ViewOfFile>& views, const Bin& bin, const 
     throw Error(ErrorKind::kBadData,
                 views.front().file + (views.size() > 1 ? " and others" : "") +
                     ": x y z: " + std::to_string(all.inside) + " of " + std::to_string(all.valid) +
-                    " points lie in the bin of " + Number(bin.size_m[0]) + " x " +
-                    Number(bin.size_m[1]) + " x " + Number(bin.size_m[2]) +
-                    " m, and neither its floor nor its walls are seen: check the pose (scanner in "
+                    " points lie in the bin of " + SizeText(bin) +
+                    ", and neither its floor nor its walls are seen: check the pose (scanner in "
                     "the bin, metres; --pose) and --bin");
   }
   const std::string warning = BinWarning(all);
@@ -86,6 +86,8 @@ ViewsOfFiles ReadViews(const CloudInput& given, const Bin& bin, const Common& co
   }
   RequireBinSeen(views, bin, common);
   for (ViewOfFile& view : views) out.clouds.push_back(std::move(view.cloud));
+  const std::string other = OtherBinSeen(out.clouds, bin);
+  if (!other.empty()) Say(common, "warning: " + other);
   return out;
 }
 
