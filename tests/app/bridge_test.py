@@ -63,6 +63,31 @@ def killed_or_frozen_while_carrying(folder):
             emulation.kill()
 
 
+def joints_told(cell):
+    told = subprocess.run([PROGRAM, "doctor", "--cell", cell], capture_output=True, text=True,
+                          timeout=60).stdout
+    return told.split("joints ")[1].split(" degrees")[0], told
+
+
+def killed_and_started_again(folder):
+    emulation = Emulation(PROGRAM, folder + "/again", rate=2, overrides=ONE_TUBE)
+    run = Run(PROGRAM, emulation.cell, folder + "/again_run")
+    check(emulation.wait_for("carry"), "a tube is carried")
+    opened = events(emulation, "open")
+    run.process.kill()
+    run.wait(20)
+    time.sleep(1.0)
+    before, told = joints_told(emulation.cell)
+    check("nobody commands it from here" in told, "doctor tells what is left: " + told)
+    again = Run(PROGRAM, emulation.cell, folder + "/again_run2")
+    code, err = again.wait(60)
+    check(code == 69, f"what is left in the controller is 69: {code} {err}")
+    check("press HOLD" in err and "nothing was sent" in err, "and says what to do: " + err)
+    check(joints_told(emulation.cell)[0] == before, "nothing has moved")
+    check(events(emulation, "open") == opened, "the fingers were not opened")
+    emulation.stop()
+
+
 def jogged(folder):
     emulation = Emulation(PROGRAM, folder + "/jogged", rate=4, overrides=ONE_TUBE)
     verb = [PROGRAM, "jog", "--cell", emulation.cell, "--joint", "6", "--json"]
@@ -135,4 +160,4 @@ def what_may_not_move(folder):
     emulation.stop()
 
 
-run_tests(a_round_over_the_wire, killed_or_frozen_while_carrying, asked_twice_to_stop, jogged, what_may_not_move)
+run_tests(a_round_over_the_wire, killed_or_frozen_while_carrying, asked_twice_to_stop, killed_and_started_again, jogged, what_may_not_move)
