@@ -5,10 +5,13 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 
+#include "hw_bridge/cell/left_over.h"
 #include "hw_bridge/cell/wall_clock.h"
+#include "hw_bridge/drivers/device_lock.h"
 #include "models/base/error.h"
 #include "models/base/json.h"
 #include "models/base/text.h"
@@ -48,17 +51,30 @@ std::vector<Examined> Examine() {
   return out;
 }
 
-/// Connects to the device of a role; `read` says what it tells, its driver what else there is.
+/// Connects to the device of a role, unless another program has it; `read` says what it tells and
+/// what speaks against a round, its driver what else there is. `owner`: the role as DeviceLock
+/// knows it; empty: more than one program may look.
 template <class Role, class Read>
-void Look(const std::string& what, const Role& role, const DriverContext& context, Read read,
-          std::vector<Examined>& out) {
+void Look(const std::string& what, const Role& role, const std::string& owner,
+          const DriverContext& context, Read read, std::vector<Examined>& out) {
   if (!role.IsDevice()) {
     out.push_back({what, role.driver, ""});
     return;
   }
   try {
+    std::optional<DeviceLock> lock;
+    if (!owner.empty()) {
+      const std::string device = DeviceToOwn(owner, role);
+      const std::string holder = DeviceLock::HolderOf(device);
+      if (!holder.empty()) {
+        out.push_back({what, role.driver + ": in use by " + holder + ", left alone", ""});
+        return;
+      }
+      lock.emplace(device);
+    }
     const auto device = role.Connect(context);
-    out.push_back({what, role.driver + ": " + read(*device), ""});
+    const Examined said = read(*device);
+    out.push_back({what, role.driver + ": " + said.state, said.fix});
     for (const DeviceFinding& finding : role.Chosen().Examine(*device, context)) {
       out.push_back({finding.what, finding.told, finding.fix});
     }
@@ -102,6 +118,13 @@ std::string Said(const WrenchSample& sample) {
   return out + " N m" + (sample.saturated ? ", saturated" : "");
 }
 
+/// What a device says, and what an earlier program left in the fingers by its word.
+Examined WithLeftOver(const std::string& said, const std::string& left) {
+  if (left.empty()) return {"", said, ""};
+  return {"", said + "; " + left,
+          "take it out, or let `run` at a terminal put it back into the bin"};
+}
+
 /// Every device of the scenario's cell, read without moving anything.
 std::vector<Examined> ExamineCell(const Scenario& scenario) {
   scenario.cell.ValidateOrThrow();
@@ -111,21 +134,29 @@ std::vector<Examined> ExamineCell(const Scenario& scenario) {
   DriverContext context = ScenarioContext(scenario, model, clock, CellPurpose::kLook);
   context.believed_X_NS = [] { return RigidTransform::Identity(); };
   std::vector<Examined> out;
-  Look(
-      "arm", cell.arm, context,
-      [&](const Arm& arm) {
-        return Said(arm.State()) + (cell.arm.armed ? ", armed in the cell file" : "");
-      },
-      out);
-  Look(
-      "gripper", cell.gripper, context,
-      [](const Gripper& gripper) { return Said(gripper.State()); }, out);
-  Look(
-      "force/torque sensor", cell.wrist, context,
-      [](const ForceTorqueSensor& wrist) { return Said(wrist.Read()); }, out);
-  Look(
-      "scanner", cell.scanner, context, [&](const Scanner&) { return cell.scanner.Link().reached; },
-      out);
+  std::optional<JointVector> q;
+  const auto arm = [&](const Arm& device) {
+    const ArmState state = device.State();
+    q = state.q;
+    return Examined{"", Said(state) + (cell.arm.armed ? ", armed in the cell file" : ""), ""};
+  };
+  Look("arm", cell.arm, "", context, arm, out);
+  const auto gripper = [](const Gripper& device) {
+    const GripperState state = device.State();
+    return WithLeftOver(Said(state), LeftInFingers(state));
+  };
+  Look("gripper", cell.gripper, "gripper", context, gripper, out);
+  const double mass_kg = LoadPart(ScenarioPartName(scenario)).mass_kg;
+  const auto wrist = [&](const ForceTorqueSensor& device) {
+    const WrenchSample sample = device.Read();
+    const SafetyLimits safety = ScenarioSafety(scenario);
+    return WithLeftOver(Said(sample), q ? LeftOnWrist(sample, *q, model, safety, mass_kg) : "");
+  };
+  Look("force/torque sensor", cell.wrist, "wrist", context, wrist, out);
+  const auto scanner = [&](const Scanner&) {
+    return Examined{"", cell.scanner.Link().reached, ""};
+  };
+  Look("scanner", cell.scanner, "scanner", context, scanner, out);
   return out;
 }
 
@@ -193,6 +224,7 @@ int RunJog(const JogVerb& verb, const Common& common) {
                                         "', jog moves a device; allowed is a cell file with one");
   }
   RequireArmed(scenario);
+  const DeviceLock lock(DeviceToOwn("arm", role));
   RequireWord(verb, role.Chosen().Address());
   WallClock clock(scenario.rate);
   const CellModel model = ScenarioModel(scenario);

@@ -112,7 +112,11 @@ RoundResult RunAnywhere(const RunOptions& run, const Scenario& scenario, RoundOp
       fail(over.what());
     }
   }
-  LiveCell live(scenario, run.dry ? CellPurpose::kLook : CellPurpose::kRun, options.parallelism);
+  const auto confirm = [](const std::string& what) {
+    return AskOperator(what) == Acknowledgement::kGoOn;
+  };
+  LiveCell live(scenario, run.dry ? CellPurpose::kLook : CellPurpose::kRun, options.parallelism,
+                confirm);
   GiveWay();  // Perception and planning, to the threads that listen to the devices.
   if (!run.dry) {
     RoundResult result = RunCellRound(live.cell(), scenario, options);

@@ -1,40 +1,36 @@
 #include "twin/live/live_cell.h"
 
-#include <algorithm>
 #include <optional>
+#include <vector>
 
-#include "hw_bridge/cell/wall_clock.h"
+#include "hw_bridge/drivers/device_lock.h"
 #include "models/base/error.h"
 #include "models/base/json.h"
 #include "twin/cell/twin_cell.h"
+#include "twin/live/kept_devices.h"
+#include "twin/live/live_clock.h"
 #include "twin/round/twin_setup.h"
 
 namespace tubetwin {
 namespace {
 
-/// Wall time, with a twin that is kept up to it. While the pipeline computes the twin stands still
-/// and catches up afterwards.
-class LiveClock : public CellClock {
- public:
-  explicit LiveClock(double rate) : wall_(rate) {}
-  void Keep(TwinCell& twin) { twin_ = &twin; }
-  TimeNs Now() const override { return wall_.Now(); }
-  void AdvanceTo(TimeNs t) override {
-    if (twin_ != nullptr) {
-      CellClock& twins = twin_->cell().clock;
-      while (twins.Now() < t) {
-        const TimeNs next = std::min(t, twins.Now() + kControlPeriod);
-        wall_.AdvanceTo(next);
-        twins.AdvanceTo(next);
-      }
-    }
-    wall_.AdvanceTo(t);
-  }
+/// How long the twin's arm may take to come where the real one stands, and how near.
+constexpr double kShadow_s = 30.0, kShadowed_rad = 0.005;
 
- private:
-  WallClock wall_;
-  TwinCell* twin_ = nullptr;
-};
+/// Only one program may use a device. Without leave to move anything an arm is only watched, which
+/// more than one may.
+std::vector<DeviceLock> LockDevices(const CellConfig& cell, CellPurpose purpose) {
+  std::vector<DeviceLock> locks;
+  const auto lock = [&locks](const char* role, const auto& chosen) {
+    const std::string device = DeviceToOwn(role, chosen);
+    if (!device.empty()) locks.emplace_back(device);
+  };
+  if (purpose == CellPurpose::kRun) lock("arm", cell.arm);
+  lock("gripper", cell.gripper);
+  lock("wrist", cell.wrist);
+  lock("scanner", cell.scanner);
+  return locks;
+}
 
 }  // namespace
 
@@ -51,12 +47,16 @@ void RequireArmed(const Scenario& scenario) {
 
 DriverContext ScenarioContext(const Scenario& scenario, const CellModel& model,
                               const CellClock& clock, CellPurpose purpose) {
-  return {model, clock, scenario.rate, purpose == CellPurpose::kRun, {}};
+  return {model, clock, scenario.rate, purpose == CellPurpose::kRun, {}, {}};
 }
 
 struct LiveCell::Impl {
-  Impl(const Scenario& scenario, CellPurpose purpose, Parallelism parallelism)
-      : devices(scenario.cell), clock(scenario.rate), model(ScenarioModel(scenario)) {
+  Impl(const Scenario& scenario, CellPurpose purpose, Parallelism parallelism,
+       const LiveCell::Confirm& confirm)
+      : devices(scenario.cell),
+        locks(LockDevices(scenario.cell, purpose)),
+        clock(scenario.rate),
+        model(ScenarioModel(scenario)) {
     Bin bin;
     if (scenario.cell.HasTwin()) {
       const Pile asked = ScenarioPile(scenario);
@@ -68,23 +68,49 @@ struct LiveCell::Impl {
       bin = ScenarioBin(scenario, std::nullopt);
     }
     DriverContext context = ScenarioContext(scenario, model, clock, purpose);
+    context.confirm = confirm;
     if (devices.wrist.IsDevice()) wrist = devices.wrist.Connect(context);
     if (devices.arm.IsDevice()) arm = devices.arm.Connect(context);
-    Arm& the_arm = arm ? *arm : twin->cell().arm;
+    if (twin) Keep(twin->cell());
+    Arm& the_arm = arm ? *arm : *kept_arm;
     context.believed_X_NS = [&the_arm, this, X_NB = RigidTransform(bin.X_BN.inverse())] {
       return RigidTransform(X_NB * PoseOfScanner(model, the_arm.State().q));
     };
     if (devices.scanner.IsDevice()) scanner = devices.scanner.Connect(context);
     // Last: its activation moves the fingers, which none of the others does.
     if (devices.gripper.IsDevice()) gripper = devices.gripper.Connect(context);
-    if (twin) clock.Keep(*twin);
-    cell.emplace(Cell{clock, the_arm, gripper ? *gripper : twin->cell().gripper,
-                      wrist ? *wrist : twin->cell().wrist,
-                      scanner ? *scanner : twin->cell().scanner, model, bin,
+    if (twin) Live();
+    cell.emplace(Cell{clock, the_arm, gripper ? *gripper : *kept_gripper,
+                      wrist ? *wrist : *kept_wrist, scanner ? *scanner : *kept_scanner, model, bin,
                       ScenarioSafety(scenario)});
   }
 
+  void Keep(Cell& twins) {
+    kept_arm.emplace(twins.arm, clock);
+    kept_gripper.emplace(twins.gripper, clock);
+    kept_wrist.emplace(twins.wrist, clock);
+    kept_scanner.emplace(twins.scanner, clock);
+  }
+
+  /// From here on the twin keeps up with the wall; its arm stands where a real one does.
+  void Live() {
+    CellClock& twins = twin->cell().clock;
+    if (!arm) return clock.Keep(twins, {});
+    shadow.emplace(*arm, twin->servo_arm());
+    const TimeNs end = twins.Now() + FromSeconds(kShadow_s);
+    while (shadow->Off_rad() > kShadowed_rad) {
+      if (twins.Now() >= end) {
+        throw Error(ErrorKind::kDevice,
+                    "the twin of the arm does not come to where the arm stands within 30 s");
+      }
+      shadow->Follow();
+      twins.AdvanceTo(twins.Now() + kControlPeriod);
+    }
+    clock.Keep(twins, [this] { shadow->Follow(); });
+  }
+
   CellConfig devices;
+  std::vector<DeviceLock> locks;
   LiveClock clock;
   CellModel model;
   std::optional<TwinCell> twin;
@@ -92,13 +118,19 @@ struct LiveCell::Impl {
   std::unique_ptr<Gripper> gripper;
   std::unique_ptr<ForceTorqueSensor> wrist;
   std::unique_ptr<Scanner> scanner;
+  std::optional<KeptArm> kept_arm;
+  std::optional<KeptGripper> kept_gripper;
+  std::optional<KeptWrist> kept_wrist;
+  std::optional<KeptScanner> kept_scanner;
+  std::optional<ShadowArm> shadow;
   std::optional<Cell> cell;
 };
 
-LiveCell::LiveCell(const Scenario& scenario, CellPurpose purpose, Parallelism parallelism) {
+LiveCell::LiveCell(const Scenario& scenario, CellPurpose purpose, Parallelism parallelism,
+                   const Confirm& confirm) {
   scenario.cell.ValidateOrThrow();
   if (purpose == CellPurpose::kRun) RequireArmed(scenario);
-  impl_ = std::make_unique<Impl>(scenario, purpose, parallelism);
+  impl_ = std::make_unique<Impl>(scenario, purpose, parallelism, confirm);
 }
 LiveCell::~LiveCell() = default;
 Cell& LiveCell::cell() { return *impl_->cell; }
