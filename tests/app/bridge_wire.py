@@ -89,7 +89,9 @@ def listens_on_loopback_only(emulation):
     expected = {cell["arm"][p] for p in ("motion_port", "state_port", "io_port", "hses_port")}
     expected |= {cell["gripper"]["port"], cell["wrist"]["port"], cell["wrist"]["http_port"]}
     listening = {local[1] for _, local, remote in of if remote[1] == 0}
-    check(listening == expected, f"emulate listens on {listening}, cell.toml says {expected}")
+    # One more: where files of the high-speed Ethernet server are refused, next to it or any free port.
+    check(expected <= listening and len(listening - expected) == 1,
+          f"emulate listens on {listening}, cell.toml says {expected}")
     check(all(local[0] == "127.0.0.1" for _, local, _ in of), f"on the loopback address alone: {of}")
 
 
