@@ -43,6 +43,8 @@ struct PileOverrides {
   std::optional<double> unit_m;  ///< Of the lengths in CSV and text; else metres.
 };
 Pile LoadPile(const std::string& path, const PileOverrides& overrides = {});
+/// Content of a pile.json.
+Json ToJson(const Pile& pile);
 void SavePile(const Pile& pile, const std::string& path);
 /// Throws Error(kBadData) as LoadPile does; `source` names the pile in the message.
 void ValidatePile(const Pile& pile, const std::string& source);

@@ -148,7 +148,7 @@ Pile LoadPile(const std::string& path, const PileOverrides& overrides) {
   return pile;
 }
 
-void SavePile(const Pile& pile, const std::string& path) {
+Json ToJson(const Pile& pile) {
   Json json;
   json["schema"] = "tubetwin/pile/1";
   json["bin"] = ToJson(pile.bin);
@@ -166,7 +166,9 @@ void SavePile(const Pile& pile, const std::string& path) {
   json["tubes"] = std::move(tubes);
   json["seed"] = pile.seed;
   json["settled"] = pile.settled;
-  WriteJsonFile(json, path);
+  return json;
 }
+
+void SavePile(const Pile& pile, const std::string& path) { WriteJsonFile(ToJson(pile), path); }
 
 }  // namespace tubetwin

@@ -298,8 +298,8 @@ std::map<std::string, std::uint64_t> ExportMcap(CellRecording& recording, const 
   TT_CHECK(options.cloud_step >= 1);
   const CellRecordingHeader& header = recording.header();
   std::map<std::string, std::uint64_t> counts;
-  WriteThroughTemporary(path, [&](const std::string& temporary) {
-    McapWriter out(temporary, "tubetwin");
+  WriteFileInPieces(path, [&](OutputFile& file) {
+    McapWriter out(file, "tubetwin");
     Exporter exporter(header, options, out);
     std::map<std::string, std::string> about = header.versions;
     about["seed"] = std::to_string(header.seed);

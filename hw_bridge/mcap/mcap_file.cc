@@ -58,9 +58,7 @@ std::string RecordBytes(std::uint8_t opcode, std::string_view content) {
 
 }  // namespace
 
-McapWriter::McapWriter(const std::string& path, const std::string& library)
-    : path_(path), out_(path, std::ios::binary | std::ios::trunc) {
-  if (!out_) throw Error(ErrorKind::kCannotCreate, path + ": cannot be created");
+McapWriter::McapWriter(OutputFile& out, const std::string& library) : out_(out) {
   Write(kMagic);
   Record(kHeader, Content().Text("").Text(library).bytes());
 }
@@ -202,8 +200,6 @@ void McapWriter::Finish() {
   Write(footer.bytes());
   Write(Content().U32(crc_).bytes());
   Write(kMagic);
-  out_.close();
-  if (!out_) throw Error(ErrorKind::kIo, path_ + ": writing failed at byte " + std::to_string(at_));
 }
 
 std::uint64_t McapWriter::messages(std::uint16_t channel) const { return counts_.at(channel); }
@@ -213,8 +209,7 @@ void McapWriter::Record(std::uint8_t opcode, std::string_view content) {
 }
 
 void McapWriter::Write(std::string_view bytes) {
-  out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!out_) throw Error(ErrorKind::kIo, path_ + ": writing failed at byte " + std::to_string(at_));
+  out_.Write(bytes);
   crc_ = Crc32(bytes, crc_);
   at_ += bytes.size();
 }

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "models/base/disk/output_file.h"
 #include "models/base/time.h"
 
 namespace tubetwin {
@@ -16,8 +16,8 @@ namespace tubetwin {
 /// viewers find everything without reading the whole. Holds one chunk. One thread.
 class McapWriter {
  public:
-  /// Throws Error(kCannotCreate).
-  McapWriter(const std::string& path, const std::string& library);
+  /// Into `out`, an empty file that must outlive it. Throws Error(kIo).
+  McapWriter(OutputFile& out, const std::string& library);
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
 
@@ -54,8 +54,7 @@ class McapWriter {
   std::string ChunkIndex(const Chunk& chunk) const;
   void Write(std::string_view bytes);
 
-  std::string path_;
-  std::ofstream out_;
+  OutputFile& out_;
   std::uint64_t at_ = 0;
   std::uint32_t crc_ = 0;  ///< Of the section being written.
 

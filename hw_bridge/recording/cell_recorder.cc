@@ -1,7 +1,9 @@
 #include "hw_bridge/recording/cell_recorder.h"
 
-#include <exception>
+#include <optional>
 #include <utility>
+
+#include "models/base/error.h"
 
 namespace tubetwin {
 namespace {
@@ -11,11 +13,18 @@ struct Tape {
   CellRecordingWriter writer;
   CellClock& clock;
 
-  std::exception_ptr failure = {};  ///< Of writing down the time; thrown at the next call.
+  /// Of writing. The cell goes on unrecorded: no device may be left alone in the middle of a motion
+  /// because a disk is full.
+  std::optional<Error> failure = {};
 
   void Add(const CellEvent& event) {
-    if (failure) std::rethrow_exception(failure);
-    writer.Add(event);
+    if (failure) return;
+    try {
+      writer.Add(event);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kIo) throw;
+      failure = error;
+    }
   }
   /// Writes down a read's answer and hands it on.
   template <typename Event, typename Answer>
@@ -29,16 +38,7 @@ struct Tape {
 class RecordedClock : public CellClock {
  public:
   explicit RecordedClock(Tape& tape) : tape_(tape) {}
-  /// Never throws where the inner clock does not: destructors ask for the time.
-  TimeNs Now() const override {
-    const TimeNs now = tape_.clock.Now();
-    try {
-      tape_.Add(TimeRead{now});
-    } catch (...) {
-      tape_.failure = std::current_exception();
-    }
-    return now;
-  }
+  TimeNs Now() const override { return tape_.Read<TimeRead>(tape_.clock.Now()); }
   void AdvanceTo(TimeNs t) override {
     tape_.clock.AdvanceTo(t);
     tape_.Add(TimeAdvanced{t, tape_.now()});
@@ -174,6 +174,11 @@ void CellRecorder::Result(const std::string& text) {
   impl_->tape.Add(PipelineNote{PipelineNote::Kind::kResult, impl_->tape.now(), text});
 }
 
-void CellRecorder::Finish(const std::string& reason) { impl_->tape.writer.Finish(reason); }
+const std::optional<Error>& CellRecorder::failure() const { return impl_->tape.failure; }
+
+void CellRecorder::Finish(const std::string& reason) {
+  if (impl_->tape.failure) throw Error(*impl_->tape.failure);
+  impl_->tape.writer.Finish(reason);
+}
 
 }  // namespace tubetwin

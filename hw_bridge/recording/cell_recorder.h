@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hw_bridge/cell/cell.h"
 #include "hw_bridge/recording/cell_recording.h"
+#include "models/base/error.h"
 
 namespace tubetwin {
 
@@ -23,7 +25,11 @@ class CellRecorder {
   void Caption(const std::string& text);
   /// What something came to, as the pipeline believes: a replay compares it.
   void Result(const std::string& text);
-  /// The round is over: end mark and index. Without it the recording counts as cut short.
+  /// Why nothing is recorded any more: the disk is full. The cell goes on all the same, what was
+  /// recorded before can be read, and whoever runs the round should bring it to an end.
+  const std::optional<Error>& failure() const;
+  /// The round is over: end mark and index. Without it the recording counts as cut short. Throws
+  /// failure(), and Error(kIo).
   void Finish(const std::string& reason);
 
  private:

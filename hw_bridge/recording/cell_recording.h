@@ -11,6 +11,7 @@
 
 #include "hw_bridge/recording/cell_event.h"
 #include "hw_bridge/recording/event_codec.h"
+#include "models/base/disk/output_file.h"
 #include "models/bin.h"
 #include "models/cell_model.h"
 #include "models/part.h"
@@ -66,27 +67,25 @@ class CellRecordingWriter {
   CellRecordingWriter(const CellRecordingWriter&) = delete;
   CellRecordingWriter& operator=(const CellRecordingWriter&) = delete;
 
-  /// Throws Error(kIo) when the disk is full.
+  /// Throws Error(kIo) when the disk is full; what was written is a whole recording that was cut
+  /// short, and nothing may be added any more.
   void Add(const CellEvent& event);
   /// The end mark and the index. `reason`: why the round ended. Nothing may be added afterwards.
   void Finish(const std::string& reason);
 
-  std::uint64_t bytes_written() const { return at_; }
+  std::uint64_t bytes_written() const { return out_.size(); }
 
  private:
   void WriteBlock(RecordingBlock::Kind kind, const std::string& content, TimeNs first, TimeNs last);
   void WriteEvents();
   void WriteIndex();
-  void Write(const std::string& bytes);
 
-  std::string path_;
-  std::ofstream out_;
-  std::uint64_t at_ = 0;
+  OutputFile out_;
   std::uint64_t commands_ = 0, reads_ = 0;
   EventEncoder encoder_;
   std::string events_;  ///< Of the block that is being filled.
   TimeNs first_{0};
-  bool finished_ = false;
+  bool finished_ = false;  ///< Nothing is written any more: it is whole, or the disk is full.
   std::vector<RecordingBlock> blocks_;
 };
 

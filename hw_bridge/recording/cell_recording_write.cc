@@ -21,14 +21,16 @@ bool IsCaption(const CellEvent& event) {
   return note != nullptr && note->kind == PipelineNote::Kind::kCaption;
 }
 
+OutputFile CreateWithFolder(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  MakeFolder(folder.empty() ? "." : folder.string());
+  return OutputFile::Create(path);
+}
+
 }  // namespace
 
 CellRecordingWriter::CellRecordingWriter(const std::string& path, const CellRecordingHeader& header)
-    : path_(path) {
-  const fs::path folder = fs::path(path).parent_path();
-  MakeFolder(folder.empty() ? "." : folder.string());
-  out_.open(path, std::ios::binary | std::ios::trunc);
-  if (!out_) throw Error(ErrorKind::kCannotCreate, path + ": cannot be created");
+    : out_(CreateWithFolder(path)) {
   WriteBlock(RecordingBlock::Kind::kHeader, HeaderToText(header), TimeNs(0), TimeNs(0));
 }
 
@@ -62,10 +64,9 @@ void CellRecordingWriter::Finish(const std::string& reason) {
   WriteEvents();
   WriteBlock(RecordingBlock::Kind::kEnd, EndToText({reason, commands_, reads_}), encoder_.now(),
              encoder_.now());
-  Write(IndexFrame(blocks_, at_));
   finished_ = true;
-  out_.close();
-  if (!out_) throw Error(ErrorKind::kIo, path_ + ": writing failed at byte " + std::to_string(at_));
+  out_.Append(IndexFrame(blocks_, out_.size()));
+  out_.Close();
 }
 
 void CellRecordingWriter::WriteEvents() {
@@ -80,23 +81,20 @@ void CellRecordingWriter::WriteBlock(RecordingBlock::Kind kind, const std::strin
   const std::string frame = Compressed(content);
   RecordingBlock block;
   block.kind = kind;
-  block.byte = at_;
+  block.byte = out_.size();
   block.number = blocks_.size();
   block.first = first;
   block.last = last;
   block.size = content.size();
   block.packed = frame.size();
-  Write(BlockHead(block));
-  Write(frame);
-  out_.flush();  // Safe from a kill of this program from here on.
-  if (!out_) throw Error(ErrorKind::kIo, path_ + ": writing failed at byte " + std::to_string(at_));
+  try {
+    out_.Write(BlockHead(block) + frame);  // Safe from a kill of this program from here on.
+  } catch (const Error&) {
+    out_.CutTo(block.byte);
+    finished_ = true;
+    throw;
+  }
   blocks_.push_back(block);
-}
-
-void CellRecordingWriter::Write(const std::string& bytes) {
-  out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!out_) throw Error(ErrorKind::kIo, path_ + ": writing failed at byte " + std::to_string(at_));
-  at_ += bytes.size();
 }
 
 }  // namespace tubetwin

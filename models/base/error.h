@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -35,6 +36,10 @@ class LogicError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
+
+/// What the standard library says of the machine it runs on (files, memory, processes) as the Error
+/// that it is; nothing for any other exception.
+std::optional<Error> MachineError(const std::exception& thrown);
 
 /// Throws LogicError naming expression and place. Called by TT_CHECK only.
 [[noreturn]] void ThrowCheckFailed(const char* expression, const char* file, int line);

@@ -5,9 +5,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "models/base/error.h"
 #include "tests/support/catch.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
@@ -79,6 +81,24 @@ TEST_CASE("writing below a file or onto a folder cannot be created") {
   CHECK(KindOf([&] { WriteFileAtomically(folder / "dir", "y"); }) == ErrorKind::kCannotCreate);
 }
 
+TEST_CASE(
+    "what the standard library says of the machine has its own exit code and the file's name") {
+  const auto kind_of = [](int code) {
+    const fs::filesystem_error thrown("cannot", "p/f.json",
+                                      std::error_code(code, std::generic_category()));
+    const auto error = MachineError(thrown);
+    REQUIRE(error.has_value());
+    CHECK_THAT(error->what(), Catch::Matchers::StartsWith("p/f.json: "));
+    return error->kind();
+  };
+  CHECK(kind_of(EIO) == ErrorKind::kIo);
+  CHECK(kind_of(ENOSPC) == ErrorKind::kIo);
+  CHECK(kind_of(EACCES) == ErrorKind::kCannotCreate);
+  CHECK(kind_of(ENOENT) == ErrorKind::kMissing);
+  CHECK(MachineError(std::bad_alloc())->kind() == ErrorKind::kInterrupted);
+  CHECK_FALSE(MachineError(std::logic_error("a bug")).has_value());
+}
+
 TEST_CASE("what is no file is not replaced by one") {
   const TemporaryFolder folder;
   const std::string pipe = folder / "pipe", link = folder / "link";
@@ -104,18 +124,54 @@ TEST_CASE("writing into a folder without permission cannot be created") {
   CHECK(KindOf([&] { WriteFileAtomically(closed + "/f", "x"); }) == ErrorKind::kCannotCreate);
 }
 
-TEST_CASE("a full disk is a failure of writing, and the target stays absent") {
+TEST_CASE("a full disk is a failure of writing that names the target, which stays as it was") {
   const TemporaryFolder folder;
-  CHECK(KindOf([&] {
-          WriteThroughTemporary(folder / "f", [](const std::string& temporary) {
-            fs::create_symlink("/dev/full", temporary);
-            std::ofstream out(temporary);
-            out << "x";
-            out.close();
-            if (!out) throw Error(ErrorKind::kIo, "f: writing failed");
-          });
-        }) == ErrorKind::kIo);
-  CHECK_FALSE(fs::exists(folder / "f"));
+  WriteFileAtomically(folder / "f", "old");
+  std::string said;
+  ErrorKind kind = ErrorKind::kInternal;
+  {
+    const FullDisk full(1000);
+    try {
+      WriteFileAtomically(folder / "f", std::string(5000, 'x'));
+    } catch (const Error& e) {
+      said = e.what();
+      kind = e.kind();
+    }
+  }
+  CHECK(kind == ErrorKind::kIo);
+  CHECK(said == folder / "f" + ": cannot be written at byte 1000: File too large");
+  CHECK(ReadFile(folder / "f") == "old");
+  CHECK(CountFiles(folder.path()) == 1);
+}
+
+TEST_CASE("a file that cannot be read to its end is no shorter file") {
+  // The address 0 of a process is nobody's: the kernel says EIO.
+  CHECK(KindOf([&] { ReadFile("/proc/self/mem"); }) == ErrorKind::kIo);
+}
+
+TEST_CASE("a link is replaced and what it points to stays") {
+  const TemporaryFolder folder;
+  WriteFileAtomically(folder / "precious", "mine");
+  fs::create_symlink("precious", folder / "f");
+  WriteFileAtomically(folder / "f", "new");
+  CHECK(ReadFile(folder / "precious") == "mine");
+  CHECK_FALSE(fs::is_symlink(folder / "f"));
+  CHECK(ReadFile(folder / "f") == "new");
+}
+
+TEST_CASE("temporary names are new each time, are nobody's before, and fit beside long names") {
+  const TemporaryFolder folder;
+  std::set<std::string> names;
+  const auto note = [&](const std::string& temporary) {
+    names.insert(temporary);
+    CHECK(fs::file_size(temporary) == 0);
+  };
+  for (int i = 0; i < 50; ++i) WriteThroughTemporary(folder / "f.txt", note);
+  CHECK(names.size() == 50);
+  const std::string longest = folder / (std::string(255 - 4, 'n') + ".txt");
+  WriteFileAtomically(longest, "x");
+  CHECK(ReadFile(longest) == "x");
+  CHECK(KindOf([&] { WriteFileAtomically(longest + "n", "x"); }) == ErrorKind::kCannotCreate);
 }
 
 TEST_CASE("a fingerprint is the published FNV-1a of the text") {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <vector>
 
 #include "hw_bridge/recording/cell_recorder.h"
@@ -10,12 +11,14 @@
 #include "tests/recording/random_events.h"
 #include "tests/recording/restless_cell.h"
 #include "tests/support/catch.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/paper_cell.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
 namespace {
 
+namespace fs = std::filesystem;
 using test::Bits;
 
 CellRecordingHeader Header() {
@@ -274,19 +277,53 @@ TEST_CASE("Files that are no cell recordings are refused by name", "[unit]") {
   CHECK_THROWS_WITH(CellRecording(folder.path()), Catch::Contains("no regular file"));
 }
 
-TEST_CASE("A full disk is told with the byte, a folder that cannot be made as such", "[unit]") {
-  const auto kind_of = [](const std::string& path) {
+TEST_CASE("A disk that fills leaves what was recorded before, and the cell goes on", "[unit]") {
+  const TemporaryFolder folder;
+  const auto record = [&](const std::string& path, rlim_t bytes) {
+    const FullDisk full(bytes);
+    test::RestlessCell cell(5);
+    CellRecorder recorder(cell.cell(), Header(), path);
+    test::Exercise(recorder.cell(), 100);
+    const std::optional<Error> failure = recorder.failure();
+    if (failure) {
+      CHECK_THROWS_WITH(recorder.Finish("over"), failure->what());
+    } else {
+      recorder.Finish("over");
+    }
+    return failure;
+  };
+  REQUIRE_FALSE(record(folder / "whole.rec.zst", RLIM_INFINITY).has_value());
+  const std::vector<std::string> all = EventsOf(folder / "whole.rec.zst");
+  const std::uintmax_t size = fs::file_size(folder / "whole.rec.zst");
+  std::size_t longest = 0;
+  for (int part = 2; part < 10; ++part) {
+    const std::string path = folder / ("cut" + std::to_string(part) + ".rec.zst");
+    const std::optional<Error> failure = record(path, size * part / 10);
+    REQUIRE(failure.has_value());
+    CHECK(failure->kind() == ErrorKind::kIo);
+    CHECK_THAT(failure->what(), Catch::StartsWith(path + ": cannot be written at byte ") &&
+                                    Catch::Contains("File too large"));
+    CellRecording recording(path);
+    CHECK_FALSE(recording.complete());
+    CHECK(recording.dropped_bytes() == 0);
+    const std::vector<std::string> some = EventsOf(recording);
+    CHECK(some.size() >= longest);
+    longest = some.size();
+    CHECK(std::equal(some.begin(), some.end(), all.begin()));
+  }
+  CHECK(longest > all.size() / 2);
+}
+
+TEST_CASE("A folder that cannot be made is told by name", "[unit]") {
+  for (const char* path : {"/dev/full", "/dev/null/cell.rec.zst"}) {
     try {
       CellRecordingWriter(path, Header());
+      FAIL_CHECK(path);
     } catch (const Error& e) {
-      CAPTURE(e.what());
-      CHECK_THAT(e.what(), Catch::StartsWith(path) || Catch::Contains("/dev/null"));
-      return e.kind();
+      CHECK(e.kind() == ErrorKind::kCannotCreate);
+      CHECK_THAT(e.what(), Catch::Contains("/dev/full") || Catch::Contains("/dev/null"));
     }
-    return ErrorKind::kUsage;
-  };
-  CHECK(kind_of("/dev/full") == ErrorKind::kIo);
-  CHECK(kind_of("/dev/null/cell.rec.zst") == ErrorKind::kCannotCreate);
+  }
 }
 
 TEST_CASE("A recording holds one block in memory, not the round", "[unit]") {

@@ -82,7 +82,8 @@ TEST_CASE("An MCAP file has the specified records, places and check sums", "[uni
   const std::string path = folder / "f.mcap";
   constexpr int kMessages = 40000;
   {
-    McapWriter out(path, "test");
+    OutputFile file = OutputFile::Create(path);
+    McapWriter out(file, "test");
     const auto a = out.AddChannel("/a", "test.A", "{\"type\":\"object\"}");
     const auto b = out.AddChannel("/b", "test.B", "{\"type\":\"object\"}");
     out.AddMetadata("about", {{"key", "value"}});

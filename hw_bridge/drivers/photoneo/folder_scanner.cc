@@ -83,8 +83,8 @@ class FolderLink {
     for (const auto& [name, entry] : before) last_ = std::max(last_, entry.name.number);
     const std::uint64_t number = ++last_;
     const std::string trigger = TriggerFileName(number);
-    WriteFileAtomically(Path(trigger), "a scan is wanted: answer as " +
-                                           ScanFileNameOf(number, ".pcd") + " or .ply\n");
+    WriteMessageFile(Path(trigger), "a scan is wanted: answer as " +
+                                        ScanFileNameOf(number, ".pcd") + " or .ply\n");
     AcquiredScan scan = Await(before, number, stop);
     std::error_code gone;  // A feed that took the trigger up has removed it.
     fs::remove(Path(trigger), gone);

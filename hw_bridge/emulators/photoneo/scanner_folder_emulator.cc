@@ -26,14 +26,14 @@ void CorruptFile(const std::string& path) {
   for (std::size_t i = 3; i < bytes.size() && i < 64; i += 7) {
     bytes[i] = static_cast<char>(bytes[i] ^ 0x95);
   }
-  WriteFileAtomically(path, bytes);
+  WriteMessageFile(path, bytes);
 }
 
 void WriteGarbage(const std::string& path, std::uint64_t seed) {
   RandomStream stream(seed, 0, "garbage scan");
   std::string bytes(4096, '\0');
   for (char& c : bytes) c = static_cast<char>(stream.Index(256));
-  WriteFileAtomically(path, bytes);
+  WriteMessageFile(path, bytes);
 }
 
 }  // namespace
@@ -182,7 +182,7 @@ void ScannerFolderEmulator::Refuse(const std::string& reason) {
   if (link_.drop) return;
   const std::string path = config_.path + "/" + ScanFileNameOf(number_, ".error");
   published_.push_back(path);
-  Do(Doing::kPublishing, [path, reason] { WriteFileAtomically(path, reason + "\n"); });
+  Do(Doing::kPublishing, [path, reason] { WriteMessageFile(path, reason + "\n"); });
 }
 
 }  // namespace tubetwin

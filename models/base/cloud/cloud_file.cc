@@ -193,22 +193,16 @@ void WriteRecords(const std::string& path, const std::string& header, std::size_
                   std::size_t record_size, const std::string& trailer,
                   void (*fill)(const OrganizedCloud&, std::size_t, char*),
                   const OrganizedCloud& cloud) {
-  WriteThroughTemporary(path, [&](const std::string& temporary) {
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-    if (!out) {
-      throw Error(ErrorKind::kCannotCreate, path + ": cannot be created: " + std::strerror(errno));
-    }
-    out << header;
+  WriteFileInPieces(path, [&](OutputFile& out) {
+    out.Write(header);
     constexpr std::size_t kBlock = 16384;
     std::vector<char> block(std::min(kBlock, count) * record_size);
-    for (std::size_t first = 0; first < count && out; first += kBlock) {
+    for (std::size_t first = 0; first < count; first += kBlock) {
       const std::size_t n = std::min(kBlock, count - first);
       for (std::size_t i = 0; i < n; ++i) fill(cloud, first + i, block.data() + i * record_size);
-      out.write(block.data(), static_cast<std::streamsize>(n * record_size));
+      out.Write({block.data(), n * record_size});
     }
-    out << trailer;
-    out.close();
-    if (!out) throw Error(ErrorKind::kIo, path + ": writing failed: " + std::strerror(errno));
+    out.Write(trailer);
   });
 }
 

@@ -108,8 +108,8 @@ int Import(const PartImport& given, const Common& common) {
   const std::vector<Finding> findings = Judged(part, common);
   const std::string picture = std::filesystem::path(common.out).replace_extension(".png").string();
   // Neither file without the other: the picture is renamed when the part lies ready.
-  WriteThroughTemporary(common.out, [&](const std::string& temporary) {
-    WriteFileAtomically(temporary, PartFileText(imported, tube, given));
+  WriteFileInPieces(common.out, [&](OutputFile& out) {
+    out.Write(PartFileText(imported, tube, given));
     DrawTubeFit({tube.wall, tube.line, tube.radius_m, Headline(part, tube)}, picture);
   });
   if (common.json) {
