@@ -61,6 +61,16 @@ inline RoundSummary FakeSummary(int start, int placed, int outside, double sim_s
   return summary;
 }
 
+/// The record with a summary that tells what its attempts tell.
+inline RoundRecord Summed(RoundRecord record) {
+  const AttemptCounts rows = CountAttempts(record.attempts);
+  record.summary.attempts = rows.attempts;
+  record.summary.success = rows.success;
+  record.summary.first_attempt = rows.first_attempt;
+  record.summary.dropped = rows.dropped;
+  return record;
+}
+
 /// A round in no time, of random outcome by its seed and variant; timings come from the clock's
 /// mood.
 inline RoundOutput FakeRound(const Campaign& campaign, const RoundTask& task) {
@@ -83,6 +93,7 @@ inline RoundOutput FakeRound(const Campaign& campaign, const RoundTask& task) {
     number = success ? 1 : number + 1;
   }
   out.record.summary = FakeSummary(start, placed, 0, sim_s);
+  out.record = Summed(std::move(out.record));
   return out;
 }
 
@@ -101,7 +112,7 @@ inline RoundRecord Record(int round, std::vector<AttemptRecord> attempts, RoundS
   record.seed = RoundSeed(1, round);
   record.attempts = std::move(attempts);
   record.summary = std::move(summary);
-  return record;
+  return Summed(std::move(record));
 }
 
 inline CampaignRunOptions Options(const std::string& folder, Shard shard = {}) {

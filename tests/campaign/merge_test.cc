@@ -102,6 +102,76 @@ TEST_CASE("a merged folder reads back as what was merged and merges nothing else
   CHECK(ReadCampaignResult(folder / "m").identity.seed == 1);
 }
 
+TEST_CASE("a merged folder that lost a row or changed a value is refused by its check sums") {
+  const TemporaryFolder folder;
+  RunAll(FakeCampaign(6, 2), folder / "c");
+  const auto damage = [&](const std::string& file, const auto& change, const std::string& said) {
+    INFO(file << ": " << said);
+    WriteMerged(ReadShards({folder / "c"}), folder / "m");
+    CHECK(ReadCampaignResult(folder / "m").records.size() == 12);
+    change(folder / ("m/" + file));
+    const Error refused = Refusal([&] { ReadCampaignResult(folder / "m"); });
+    CHECK(refused.kind() == ErrorKind::kBadData);
+    CHECK_THAT(refused.what(), Contains("m/" + file) && Contains(said));
+  };
+  const auto drop_row = [](const std::string& file) {
+    const std::string text = ReadFile(file);
+    WriteFileAtomically(file, text.substr(text.find('\n') + 1));
+  };
+  const auto flip = [](const std::string& file) {
+    std::string text = ReadFile(file);
+    char& digit = text[text.find_first_of("0123456789", text.size() / 2)];
+    digit = digit == '3' ? '4' : '3';
+    WriteFileAtomically(file, text);
+  };
+  const auto remove = [](const std::string& file) { fs::remove(file); };
+  const auto forget = [](const std::string& file) {
+    Json manifest = ReadJsonFile(file);
+    manifest.erase("files");
+    WriteJsonFile(manifest, file);
+  };
+  WriteMerged(ReadShards({folder / "c"}), folder / "m");
+  for (const char* rows : {"picks.jsonl", "timings.jsonl"}) {
+    const int n = LinesOf(folder / ("m/" + std::string(rows)));
+    damage(rows, drop_row, std::to_string(n - 1) + " rows against " + std::to_string(n));
+    damage(rows, flip, "check sum");
+    damage(rows, remove, "it is missing");
+  }
+  damage("rounds.jsonl", drop_row, "11 rows against 12");
+  damage("summary.json", flip, "check sum");
+  damage("manifest.json", remove, "merge the shards again");
+  damage("manifest.json", forget, "merge the shards again");
+}
+
+TEST_CASE("of a merged folder without check sums, rows are compared with their rounds' summaries") {
+  const TemporaryFolder folder;
+  RunAll(FakeCampaign(6), folder / "c");
+  const auto damage = [&](const std::string& from, const std::string& to, const std::string& said) {
+    INFO(said);
+    fs::remove_all(folder / "m");
+    WriteMerged(ReadShards({folder / "c"}), folder / "m");
+    Json identity = ReadJsonFile(folder / "m/campaign.json");
+    identity.erase("build");  // As versions before 0.4 left it.
+    WriteJsonFile(identity, folder / "m/campaign.json");
+    fs::remove(folder / "m/manifest.json");
+    CHECK(ReadCampaignResult(folder / "m").records.size() == 6);
+    std::string text = ReadFile(folder / "m/picks.jsonl");
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+    WriteFileAtomically(folder / "m/picks.jsonl", text);
+    const Error refused = Refusal([&] { ReadCampaignResult(folder / "m"); });
+    CHECK(refused.kind() == ErrorKind::kBadData);
+    CHECK_THAT(refused.what(), Contains("m/picks.jsonl: variant 0 round ") && Contains(said));
+  };
+  damage("\"success\":true", "\"success\":false", " successes, its summary of ");
+  damage("\"outcome\":\"nothing_held\"", "\"outcome\":\"dropped\"",
+         " dropped tubes, its summary of ");
+  WriteMerged(ReadShards({folder / "c"}), folder / "m2");
+  const std::string picks = ReadFile(folder / "m2/picks.jsonl");
+  damage(picks.substr(0, picks.find('\n') + 1), "", " attempts, its summary of ");
+}
+
 TEST_CASE(
     "statistics count truth, never belief, and a round's first attempt anew after each tube") {
   // Believed placed though nothing came; then placed at the second try; then two at once; one lost.

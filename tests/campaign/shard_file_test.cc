@@ -8,9 +8,12 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <numeric>
 #include <sstream>
 
+#include "models/base/disk/build_id.h"
+#include "models/base/json.h"
 #include "tests/campaign/fake_rounds.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
@@ -125,6 +128,13 @@ TEST_CASE("half-written, damaged and doubled lines are dropped and their rounds 
     CHECK_THAT(refused.what(), Contains(said));
     CHECK(RunAll(campaign, folder / "c").end == CampaignEnd::kDone);
     CHECK(MergedBytes({folder / "c"}, folder / "m") == expected);
+    // Every byte that was dropped is kept.
+    const std::string kept = fs::exists(file + ".damaged") ? ReadFile(file + ".damaged") : "";
+    std::istringstream lines(text);
+    for (std::string bad; std::getline(lines, bad);) {
+      CHECK((kept + good).find(bad) != std::string::npos);
+    }
+    fs::remove(file + ".damaged");
   };
   damaged(good.substr(0, good.size() - 40), "jsonl:7: half-written");
   damaged(good.substr(0, good.size() - 1), "jsonl:7: half-written");
@@ -149,6 +159,155 @@ TEST_CASE("a round that stands twice with different rows is an error that names 
   CHECK(refused.kind() == ErrorKind::kBadData);
   CHECK_THAT(refused.what(), Contains("jsonl:5") && Contains("stands already in line 3") &&
                                  Contains("differs: row 1: success"));
+}
+
+TEST_CASE("damaged lines of several resumes are kept one after another, a link is not followed") {
+  const TemporaryFolder folder;
+  const Campaign campaign = FakeCampaign(3);
+  RunAll(campaign, folder / "c");
+  const std::string file = folder / "c/shard-00000-of-00001.jsonl", kept = file + ".damaged";
+  for (const char* half : {"{\"first", "{\"second"}) {
+    std::ofstream(file, std::ios::app) << half;
+    RunAll(campaign, folder / "c");
+  }
+  CHECK(ReadFile(kept) == "{\"first\n{\"second\n");
+  fs::remove(kept);
+  WriteFileAtomically(folder / "precious", "mine");
+  fs::create_symlink("../precious", kept);
+  std::ofstream(file, std::ios::app) << "{\"third";
+  RunAll(campaign, folder / "c");
+  CHECK(ReadFile(folder / "precious") == "mine");
+  CHECK(ReadFile(kept) == "{\"third\n");
+}
+
+TEST_CASE("a campaign.json that a power cut emptied is kept and written anew, its rounds go on") {
+  const TemporaryFolder folder;
+  const Campaign campaign = FakeCampaign(4);
+  RunAll(campaign, folder / "c", {0, 2});
+  const std::string expected = ReadFile(folder / "c/campaign.json");
+  for (const std::string& left : {std::string(), expected.substr(0, 100)}) {
+    WriteFileAtomically(folder / "c/campaign.json", left);
+    const Error refused = Refusal([&] { ReadShards({folder / "c"}); });
+    CHECK(refused.kind() == ErrorKind::kBadData);
+    CHECK(RunAll(campaign, folder / "c", {0, 2}).progress.done == 2);
+    CHECK(ReadFile(folder / "c/campaign.json") == expected);
+    CHECK(ReadFile(folder / "c/campaign.json.damaged") == left);
+  }
+  // The heads of shards still tell whose they are.
+  WriteFileAtomically(folder / "c/campaign.json", "");
+  CHECK_THAT(Refusal([&] {
+               RunAll(FakeCampaign(4, 1, 2), folder / "c", {0, 2});
+             }).what(),
+             Contains("holds rounds of another campaign"));
+}
+
+TEST_CASE("a folder that is removed or renamed while its shard runs ends it with 74") {
+  const TemporaryFolder folder;
+  const Campaign campaign = FakeCampaign(40);
+  const std::function<void()> kinds[] = {
+      [&] { fs::remove_all(folder / "c"); },
+      [&] { fs::rename(folder / "c", folder / "e"); },
+      [&] { fs::remove(folder / "c/shard-00000-of-00001.jsonl"); },
+  };
+  for (const auto& take_away : kinds) {
+    CampaignRunOptions options = Options(folder / "c");
+    bool taken = false;
+    int done = 0;
+    options.progress = [&](const ShardProgress& progress) {
+      done = progress.done;
+      if (taken || done < 3) return;
+      taken = true;
+      take_away();
+    };
+    const Error refused = Refusal([&] { RunCampaign(campaign, Rounds(campaign), options); });
+    CHECK(taken);
+    CHECK(refused.kind() == ErrorKind::kIo);
+    CHECK_THAT(refused.what(), Contains("removed or renamed"));
+    CHECK(done < 40);
+    if (!fs::exists(folder / "c/campaign.json")) CHECK_FALSE(fs::exists(folder / "c"));
+    if (fs::exists(folder / "e")) {
+      RunAll(campaign, folder / "e");
+      CHECK(ReadShards({folder / "e"}).records.size() == 40);
+    }
+    fs::remove_all(folder / "c");
+    fs::remove_all(folder / "e");
+  }
+}
+
+TEST_CASE(
+    "another build neither goes on with a campaign nor is merged with it, and says what to do") {
+  const TemporaryFolder folder;
+  const Campaign campaign = FakeCampaign(4);
+  RunAll(campaign, folder / "a", {0, 2});
+  RunAll(campaign, folder / "b", {1, 2});
+  CHECK(ReadShards({folder / "a", folder / "b"}).records.size() == 4);
+  Json identity = ReadJsonFile(folder / "b/campaign.json");
+  CHECK(identity["build"] == BuildId());
+  identity["build"] = "0123456789abcdef";
+  WriteJsonFile(identity, folder / "b/campaign.json");
+  const Error resumed = Refusal([&] { RunAll(campaign, folder / "b", {1, 2}); });
+  CHECK(resumed.kind() == ErrorKind::kCannotCreate);
+  CHECK_THAT(resumed.what(),
+             Contains("build is " + BuildId() + " against 0123456789abcdef there") &&
+                 Contains("go on with that build") && Contains("another --out"));
+  const Error merged = Refusal([&] { ReadShards({folder / "a", folder / "b"}); });
+  CHECK(merged.kind() == ErrorKind::kBadData);
+  CHECK_THAT(merged.what(), Contains("build is " + BuildId() + " against 0123456789abcdef") &&
+                                Contains("run all shards with one build"));
+  // A folder of before says no build.
+  identity.erase("build");
+  WriteJsonFile(identity, folder / "b/campaign.json");
+  CHECK_THAT(Refusal([&] {
+               RunAll(campaign, folder / "b", {1, 2});
+             }).what(),
+             Contains(" against ? there"));
+  // What was asked for comes first.
+  CHECK_THAT(Refusal([&] {
+               RunAll(FakeCampaign(4, 1, 2), folder / "b", {1, 2});
+             }).what(),
+             Contains("holds another campaign: seed is 2 against 1"));
+}
+
+TEST_CASE("a folder with files of a round or a result that are no campaign's is refused and kept") {
+  for (const char* name : {"picks.jsonl", "timings.jsonl", "rounds.jsonl", "summary.json",
+                           "manifest.json", "config.resolved.toml"}) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / name) << "mine";
+    const Error refused = Refusal([&] { RunAll(FakeCampaign(2), folder.path()); });
+    CHECK(refused.kind() == ErrorKind::kCannotCreate);
+    CHECK_THAT(refused.what(), Contains(name));
+    CHECK(ReadFile(folder / name) == "mine");
+  }
+}
+
+TEST_CASE("a lock that is a link to somebody's file ends with 73 and leaves the file") {
+  for (const char* lock : {"campaign.lock", "shard-00000-of-00001.jsonl.lock"}) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "o");
+    WriteFileAtomically(folder / "v", "PRECIOUS");
+    fs::create_symlink("../v", folder / ("o/" + std::string(lock)));
+    const Error refused = Refusal([&] { RunAll(FakeCampaign(2), folder / "o"); });
+    CHECK(refused.kind() == ErrorKind::kCannotCreate);
+    CHECK_THAT(refused.what(), Contains(lock) && Contains("symbolic link"));
+    CHECK(ReadFile(folder / "v") == "PRECIOUS");
+  }
+}
+
+TEST_CASE("EIO in a round is the machine's and makes no row") {
+  const TemporaryFolder folder;
+  const Campaign campaign = FakeCampaign(3);
+  const Error refused = Refusal([&] {
+    RunCampaign(
+        campaign,
+        [&](const RoundTask& task) -> RoundOutput {
+          if (task.round < 1) return FakeRound(campaign, task);
+          throw fs::filesystem_error("cannot", "work/x", std::make_error_code(std::errc::io_error));
+        },
+        Options(folder / "c"));
+  });
+  CHECK(refused.kind() == ErrorKind::kIo);
+  CHECK_THAT(refused.what(), Contains("work/x: Input/output error"));
+  CHECK(ReadShardFile(folder / "c/shard-00000-of-00001.jsonl").records.size() <= 1);
 }
 
 TEST_CASE("a full disk ends the run with 74 and keeps every round before it") {

@@ -78,14 +78,7 @@ TEST_CASE("a round's page opens without complaint or request, its numbers right"
   if (!HasBrowser()) return;
   const TemporaryFolder folder;
   const Campaign campaign = FakeCampaign(1);
-  RoundRecord round = FakeRound(campaign, {0, 0, 3, true}).record;
-  round.summary.attempts = static_cast<int>(round.attempts.size());
-  round.summary.success = Counts{3, round.summary.attempts};
-  for (const AttemptRecord& attempt : round.attempts) {
-    if (attempt.success != true) continue;
-    ++round.summary.first_attempt.n;
-    round.summary.first_attempt.k += attempt.attempt == 1 ? 1 : 0;
-  }
+  const RoundRecord round = FakeRound(campaign, {0, 0, 3, true}).record;
   WriteRoundRecord(round, folder.path());
   WriteRecording(SmallRecording(round.summary.attempts), folder / "recording.bin");
   WriteRoundReport(folder.path(), folder / "report.html", false);

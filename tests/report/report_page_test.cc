@@ -67,6 +67,16 @@ RoundRecord Round(std::vector<AttemptRecord> attempts) {
   return record;
 }
 
+/// With a summary that tells what its attempts tell, as a folder must.
+RoundRecord Whole(RoundRecord record) {
+  const AttemptCounts rows = CountAttempts(record.attempts);
+  record.summary.attempts = rows.attempts;
+  record.summary.success = rows.success;
+  record.summary.first_attempt = rows.first_attempt;
+  record.summary.dropped = rows.dropped;
+  return record;
+}
+
 std::string Page(const RoundRecord& record, bool computing_times = false) {
   return ReportHtml(RoundReportInput(record, computing_times), {}, RoundSummaryJson(record));
 }
@@ -189,7 +199,7 @@ TEST_CASE("what a result folder holds is shown, what it lacks is left out") {
   failed.outcome = AttemptOutcome::kNothingHeld;
   failed.success = false;
   failed.truth->placed_ids.clear();
-  WriteRoundRecord(Round({failed, Placed()}), folder.path());
+  WriteRoundRecord(Whole(Round({failed, Placed()})), folder.path());
   const std::string page = folder / "report.html";
   const std::size_t bytes = WriteRoundReport(folder.path(), page, false);
   CHECK(bytes == std::filesystem::file_size(page));
@@ -233,7 +243,7 @@ TEST_CASE("a folder that is no round's, or damaged, is refused with its reason")
   refused(ErrorKind::kMissing, "summary.json");
   WriteJsonFile(Json{{"schema", "tubetwin/pile/1"}}, folder / "summary.json");
   refused(ErrorKind::kBadData, "tubetwin/summary/1");
-  WriteRoundRecord(Round({Placed()}), folder.path());
+  WriteRoundRecord(Whole(Round({Placed()})), folder.path());
   const std::string good = ReadFile(folder / "picks.jsonl");
   WriteFileAtomically(folder / "picks.jsonl", good + "{\"round\":\n");
   refused(ErrorKind::kBadData, "picks.jsonl:2: not a JSON object");

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <set>
 
+#include "models/base/disk/build_id.h"
+#include "models/base/disk/file_lock.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
@@ -11,7 +13,7 @@
 #include "models/base/text.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/campaign/campaign_keys.h"
-#include "twin/campaign/file_lock.h"
+#include "twin/campaign/shard_file.h"
 #include "twin/round/records/json_fields.h"
 #include "twin/round/round_checkpoint.h"
 
@@ -221,6 +223,7 @@ CampaignIdentity IdentityOf(const Campaign& campaign, const std::string& program
   Json out;
   out["schema"] = "tubetwin/campaign/2";
   out["program"] = program_version;
+  out["build"] = BuildId();
   out["mujoco"] = EngineVersion();
   out["seed"] = campaign.seed;
   out["rounds"] = campaign.rounds;
@@ -236,6 +239,7 @@ CampaignIdentity IdentityFromJson(Json document, const std::string& source) {
   const JsonView view(document, source);
   const int version = SchemaVersion(view, "campaign", 2);
   out.program = view.Field("program").AsString();
+  if (const auto build = view.Optional("build")) out.build = build->AsString();
   out.mujoco = view.Field("mujoco").AsString();
   out.seed = view.Field("seed").AsInteger();
   out.rounds = static_cast<int>(view.Field("rounds").AsInteger());
@@ -260,32 +264,72 @@ std::optional<std::string> FirstDifference(const Json& mine, const Json& theirs)
   return "the order of keys";  // Equal content, written by another version.
 }
 
+std::optional<IdentityDifference> DifferenceOf(const CampaignIdentity& mine,
+                                               const CampaignIdentity& theirs) {
+  Json here = mine.document, there = theirs.document;
+  for (Json* document : {&here, &there}) document->erase("build");
+  if (const auto what = FirstDifference(here, there)) return IdentityDifference{*what};
+  if (mine.build == theirs.build) return std::nullopt;
+  const auto name = [](const CampaignIdentity& of) {
+    return of.build.empty() ? std::string("?") : of.build;
+  };
+  return IdentityDifference{"build is " + name(mine) + " against " + name(theirs), true};
+}
+
+namespace {
+
+/// The identity in a folder's campaign.json; nothing when there is none, or half a one as a power
+/// cut leaves it, which is kept beside. The heads of shards say whose they are all the same.
+std::optional<CampaignIdentity> FoundIdentity(const std::string& folder, const std::string& file) {
+  if (!fs::exists(file)) return std::nullopt;
+  if (!Json::accept(ReadFile(file))) {
+    RenameDurably(file, file + ".damaged");
+    return std::nullopt;
+  }
+  return ReadCampaignIdentity(folder);
+}
+
+/// Throws unless no file of a merged result or a round is there.
+void RequireFree(const std::string& folder) {
+  for (const char* name : {"picks.jsonl", "timings.jsonl", "rounds.jsonl", "summary.json",
+                           "manifest.json", "config.resolved.toml"}) {
+    if (fs::exists(fs::symlink_status(fs::path(folder) / name))) {
+      throw Error(ErrorKind::kCannotCreate,
+                  folder + ": holds " + name + ", which is no campaign's; give another --out");
+    }
+  }
+}
+
+}  // namespace
+
 void ClaimCampaignFolder(const std::string& folder, const CampaignIdentity& identity) {
   MakeFolder(folder);
   const fs::path out(folder);
   const auto lock = FileLock::Take((out / "campaign.lock").string());
   const std::string file = (out / "campaign.json").string();
-  if (fs::exists(file)) {
-    const CampaignIdentity found = ReadCampaignIdentity(folder);
-    const auto schema = [](const CampaignIdentity& of) { return of.document["schema"]; };
-    if (schema(found) != schema(identity)) {
-      throw Error(ErrorKind::kCannotCreate,
-                  folder + ": holds a campaign of another version of the program (" +
-                      schema(found).get<std::string>() +
-                      "); it can be read and merged, not gone on with; give another --out");
-    }
-    if (const auto difference = FirstDifference(identity.document, found.document)) {
-      throw Error(ErrorKind::kCannotCreate,
-                  folder + ": holds another campaign: " + *difference +
-                      " there; give another --out, or the old configuration to go on with it");
-    }
+  const std::optional<CampaignIdentity> found = FoundIdentity(folder, file);
+  if (!found) {
+    if (ShardFiles(folder).empty()) RequireFree(folder);
+    WriteJsonFile(identity.document, file);
     return;
   }
-  if (fs::exists(out / "picks.jsonl")) {
+  const auto schema = [](const CampaignIdentity& of) { return of.document["schema"]; };
+  if (schema(*found) != schema(identity)) {
     throw Error(ErrorKind::kCannotCreate,
-                folder + ": holds rows that are no campaign's; give another --out");
+                folder + ": holds a campaign of another version of the program (" +
+                    schema(*found).get<std::string>() +
+                    "); it can be read and merged, not gone on with; give another --out");
   }
-  WriteJsonFile(identity.document, file);
+  const auto difference = DifferenceOf(identity, *found);
+  if (!difference) return;
+  const std::string what = difference->what + " there";
+  throw Error(ErrorKind::kCannotCreate,
+              difference->build_only
+                  ? folder + ": its rounds are of another build of this program: " + what +
+                        "\ngo on with that build (`tubetwin --version` tells a program's), or give "
+                        "another --out to begin anew; what is there can be merged"
+                  : folder + ": holds another campaign: " + what +
+                        "; give another --out, or the old configuration to go on with it");
 }
 
 CampaignIdentity ReadCampaignIdentity(const std::string& folder) {

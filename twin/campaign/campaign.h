@@ -47,11 +47,12 @@ Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& o
 /// Seed of one round's scenario, below 2^53; the same in every variant.
 std::int64_t RoundSeed(std::int64_t campaign_seed, int round);
 
-/// campaign.json: all that rows depend on, with program and engine version. Two campaigns with
-/// equal documents give equal rows.
+/// campaign.json: all that rows depend on, with program, its build and the engine's version. Two
+/// campaigns with equal documents give equal rows.
 struct CampaignIdentity {
   Json document;  ///< The whole; what follows is read from it.
   std::string program, mujoco;
+  std::string build;  ///< BuildId() of the program that runs it; empty in files of before 0.4.
   std::int64_t seed = 0;
   int rounds = 0;                     ///< Of each variant.
   std::vector<std::string> variants;  ///< Their names.
@@ -65,9 +66,19 @@ CampaignIdentity IdentityFromJson(Json document, const std::string& source);
 /// The first key in which two identities differ with both values, for messages; nothing when equal.
 std::optional<std::string> FirstDifference(const Json& mine, const Json& theirs);
 
+/// What keeps two identities from being one campaign's.
+struct IdentityDifference {
+  std::string what;         ///< The first key that differs, with both values.
+  bool build_only = false;  ///< All that rows were asked for is the same, the build is not.
+};
+/// Nothing when shards of both are one campaign's.
+std::optional<IdentityDifference> DifferenceOf(const CampaignIdentity& mine,
+                                               const CampaignIdentity& theirs);
+
 /// Makes `folder` this campaign's: writes campaign.json, or checks the one that is there. Safe for
-/// processes that claim at the same time. Throws Error(kCannotCreate) when the folder belongs to
-/// another campaign (naming the first key that differs) or holds a single round.
+/// processes that claim at the same time. A campaign.json that is no JSON is kept as
+/// campaign.json.damaged and written anew. Throws Error(kCannotCreate) when the folder belongs to
+/// another campaign (naming the first key that differs) or build, or holds a single round.
 void ClaimCampaignFolder(const std::string& folder, const CampaignIdentity& identity);
 
 /// Reads FOLDER/campaign.json. Throws Error(kMissing) when the folder is no campaign's,

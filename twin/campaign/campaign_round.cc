@@ -107,7 +107,8 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
   RoundResult result = RunRound(scenario, round);
   if (fs::exists(work / kRoundCheckpointFile)) {
     MakeFolder((out / "held").string());
-    fs::rename(work / kRoundCheckpointFile, out / "held" / (name + ".pile.json"));
+    RenameDurably((work / kRoundCheckpointFile).string(),
+                  (out / "held" / (name + ".pile.json")).string());
   }
 
   RoundOutput output;
@@ -127,9 +128,7 @@ RoundOutput RunCampaignRound(const Campaign& campaign, const RoundTask& task,
       out / (failed.empty() || !task.keep_failure ? "samples" : "failures") / name;
   MakeFolder(kept.parent_path().string());
   fs::remove_all(kept, ignored);
-  std::error_code code;
-  fs::rename(work, kept, code);
-  if (code) throw Error(ErrorKind::kIo, kept.string() + ": cannot be made: " + code.message());
+  RenameDurably(work.string(), kept.string());
   fs::remove(work.parent_path(), ignored);
   if (campaign.keep.films) {
     if (!sampled && !task.keep_failure) failed.clear();

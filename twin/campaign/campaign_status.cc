@@ -1,7 +1,5 @@
 #include "twin/campaign/campaign_status.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "models/base/disk/file_lock.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
@@ -71,13 +70,11 @@ std::string DurationText(double seconds) {
 
 void WriteShardStatus(const std::string& folder, const ShardProgress& progress,
                       const std::string& state) {
-  char host[256] = "";
-  ::gethostname(host, sizeof host - 1);
   Json out;
   out["schema"] = "tubetwin/shard_status/1";
   out["shard"] = progress.shard.Name();
   out["state"] = state;
-  out["where"] = "process " + std::to_string(::getpid()) + " on " + host;
+  out["where"] = ThisProcess();
   out["written_unix_s"] = static_cast<std::int64_t>(std::time(nullptr));
   out["done"] = progress.done;
   out["total"] = progress.total;

@@ -12,6 +12,7 @@
 #include "twin/campaign/campaign_summary.h"
 #include "twin/campaign/record_line.h"
 #include "twin/campaign/shard_file.h"
+#include "twin/round/folder/file_checks.h"
 #include "twin/round/records/json_fields.h"
 #include "twin/round/result_files.h"
 
@@ -140,9 +141,13 @@ CampaignResult ReadShards(const std::vector<std::string>& folders) {
     const CampaignIdentity identity = ReadCampaignIdentity(folder);
     if (result.identity.document.is_null()) {
       result.identity = identity;
-    } else if (const auto difference =
-                   FirstDifference(result.identity.document, identity.document)) {
-      Fail(folder + ": belongs to another campaign than " + folders.front() + ": " + *difference);
+    } else if (const auto difference = DifferenceOf(result.identity, identity)) {
+      Fail(folder + ": belongs to another campaign than " + folders.front() + ": " +
+           difference->what +
+           (difference->build_only
+                ? "\nrounds of two builds of this program are not one campaign: run all shards "
+                  "with one build, or compare the two"
+                : ""));
     }
     const std::vector<std::string> files = ShardFiles(folder);
     if (files.empty()) {
@@ -160,8 +165,11 @@ CampaignResult ReadCampaignResult(const std::string& folder) {
   if (!fs::exists(fs::path(folder) / "rounds.jsonl")) return ReadShards({folder});
   CampaignResult result;
   result.identity = ReadCampaignIdentity(folder);
+  RequireWholeFiles(folder, {"picks.jsonl", "rounds.jsonl", "timings.jsonl"},
+                    /*always=*/!result.identity.build.empty());
   std::map<Key, Found> found;
   for (RoundRecord& record : ReadMerged(folder)) {
+    RequireConsistent(record, folder + "/picks.jsonl");
     const Key key{record.variant, record.round};
     found[key] = {std::move(record), folder + "/rounds.jsonl"};
   }
@@ -187,7 +195,11 @@ void WriteMerged(const CampaignResult& result, const std::string& folder) {
   WriteJsonLines(timings, (out / "timings.jsonl").string());
   WriteJsonLines(rounds, (out / "rounds.jsonl").string());
   WriteJsonFile(ToJson(Summarize(result)), (out / "summary.json").string());
-  WriteJsonFile(ToJson(ManifestOf(result)), (out / "manifest.json").string());
+  Json manifest = ToJson(ManifestOf(result));
+  manifest["files"] = FileChecks(
+      folder, {"campaign.json", "picks.jsonl", "timings.jsonl", "rounds.jsonl", "summary.json"},
+      {});
+  WriteJsonFile(manifest, (out / "manifest.json").string());
 }
 
 }  // namespace tubetwin

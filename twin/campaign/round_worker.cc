@@ -35,6 +35,11 @@ void Send(int fd, const Json& message) {
   }
 }
 
+void SendError(int fd, const Error& error) {
+  Send(fd, Json{{SpeaksOfMachine(error.kind()) ? "refused" : "thrown", error.what()},
+                {"kind", static_cast<int>(error.kind())}});
+}
+
 /// Everything that the child does; never returns into the parent's code.
 [[noreturn]] void RunInChild(const RoundTask& task, const RoundFunction& run, int fd) {
   try {
@@ -53,10 +58,12 @@ void Send(int fd, const Json& message) {
       if (!note.empty()) Send(fd, Json{{"note", note}});
     }
   } catch (const Error& e) {
-    Send(fd, Json{{SpeaksOfMachine(e.kind()) ? "refused" : "thrown", e.what()},
-                  {"kind", static_cast<int>(e.kind())}});
+    SendError(fd, e);
   } catch (const std::exception& e) {
-    Send(fd, Json{{"thrown", e.what()}});
+    const std::optional<Error> machine = MachineError(e);
+    // Memory that one round lacks it lacks again: trying for ever helps nobody.
+    const bool passes = machine && machine->kind() == ErrorKind::kInterrupted;
+    SendError(fd, machine && !passes ? *machine : Error(ErrorKind::kInternal, e.what()));
   } catch (...) {
     Send(fd, Json{{"thrown", "an exception of unknown type"}});
   }

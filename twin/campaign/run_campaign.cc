@@ -119,6 +119,7 @@ class ShardRunner {
 
   void Begin(std::pair<RoundTask, int> next) {
     RoundTask& task = next.first;
+    writer_->RequireInPlace();  // Else it would make its folder anew, for rows that are lost.
     task.keep_failure = KeptFailures(options_.out_folder, options_.shard) < campaign_.keep.failures;
     workers_.push_back(
         {std::make_unique<RoundWorker>(task, run_, [this] { writer_->CloseInChild(); }),
@@ -226,6 +227,7 @@ class ShardRunner {
 
   void WriteStatus(const std::string& state) {
     progress_.running = static_cast<int>(workers_.size());
+    writer_->RequireInPlace();
     WriteShardStatus(options_.out_folder, progress_, state);
     status_next_s_ = WallClock_s() + kStatusEvery_s;
   }
@@ -233,7 +235,7 @@ class ShardRunner {
   void TryWriteStatus(const std::string& state) {
     try {
       WriteStatus(state);
-    } catch (const Error&) {  // The disk may be full; the error on its way says why.
+    } catch (const Error&) {  // Full disk, no folder: the error on its way says why.
     }
   }
 

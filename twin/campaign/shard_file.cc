@@ -1,15 +1,9 @@
 #include "twin/campaign/shard_file.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <sstream>
 
 #include "models/base/error.h"
@@ -42,12 +36,6 @@ std::string HeadLine(const Shard& shard, const std::string& campaign) {
                           {"campaign", campaign}});
 }
 
-std::string HostName() {
-  char name[256] = "";
-  ::gethostname(name, sizeof name - 1);
-  return name;
-}
-
 /// Drops doubled rounds; differing ones are an error.
 std::vector<RoundRecord> Unique(const ShardContent& content, const std::string& path,
                                 std::vector<std::string>& notes) {
@@ -70,6 +58,16 @@ std::vector<RoundRecord> Unique(const ShardContent& content, const std::string& 
     notes.push_back(where + "; one is dropped");
   }
   return out;
+}
+
+/// Adds the lines to the file beside the shard that holds what was dropped from it.
+void KeepDamaged(const std::string& lines, const std::string& path) {
+  if (lines.empty()) return;
+  const std::string file = path + ".damaged";
+  std::error_code ignored;  // Not there: it is made.
+  const std::string before =
+      fs::is_regular_file(fs::symlink_status(file, ignored)) ? ReadFile(file) : "";
+  WriteFileAtomically(file, before + lines);
 }
 
 }  // namespace
@@ -106,6 +104,7 @@ ShardContent ReadShardFile(const std::string& path) {
     // A line counts when its line break is there too: the next one is written behind it.
     if (lines.eof()) {
       out.problems.push_back(where + "half-written");
+      out.damaged += line + "\n";
       break;
     }
     try {
@@ -124,6 +123,7 @@ ShardContent ReadShardFile(const std::string& path) {
       }
     } catch (const Error& e) {
       out.problems.push_back(where + e.what());
+      out.damaged += line + "\n";
     }
   }
   return out;
@@ -138,7 +138,7 @@ ShardWriter::ShardWriter(const std::string& folder, const Shard& shard, const st
     throw Error(ErrorKind::kInterrupted, path_ + ": shard " + shard.Name() + " is being run by " +
                                              ReadFile(lock_file) + "; wait for it to end");
   }
-  lock_->Sign("process " + std::to_string(::getpid()) + " on " + HostName());
+  lock_->Sign();
   for (const std::string& other : ShardFiles(folder)) {
     const auto found = ShardOfName(fs::path(other).filename().string());
     if (found->count != shard.count) {
@@ -159,47 +159,32 @@ ShardWriter::ShardWriter(const std::string& folder, const Shard& shard, const st
     }
     for (const std::string& problem : content.problems) notes.push_back(problem + "; dropped");
     found_ = Unique(content, path_, notes);
+    KeepDamaged(content.damaged, path_);
     if (content.campaign.empty() || !content.problems.empty() ||
         found_.size() != content.records.size()) {
-      std::string text = head;
-      for (const RoundRecord& record : found_) text += RecordLine(record) + "\n";
-      WriteFileAtomically(path_, text);
+      WriteFileInPieces(path_, [&](OutputFile& out) {
+        out.Write(head);
+        for (const RoundRecord& record : found_) out.Write(RecordLine(record) + "\n");
+      });
     }
   }
-  fd_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-  if (fd_ < 0) {
-    throw Error(ErrorKind::kCannotCreate, path_ + ": cannot be opened: " + std::strerror(errno));
-  }
-}
-
-ShardWriter::~ShardWriter() {
-  if (fd_ >= 0) ::close(fd_);
+  file_.emplace(OutputFile::Continue(path_));
 }
 
 void ShardWriter::CloseInChild() {
-  if (fd_ >= 0) ::close(fd_);
-  fd_ = -1;
+  file_.reset();
   lock_.reset();  // Closing one of two descriptors keeps the parent's lock.
 }
 
 void ShardWriter::Append(const RoundRecord& record) {
-  TT_CHECK(fd_ >= 0);
-  const std::string line = RecordLine(record) + "\n";
-  const off_t before = ::lseek(fd_, 0, SEEK_END);
-  std::size_t written = 0;
-  while (written < line.size()) {
-    const ssize_t step = ::write(fd_, line.data() + written, line.size() - written);
-    if (step < 0 && errno == EINTR) continue;
-    if (step <= 0) break;
-    written += static_cast<std::size_t>(step);
-  }
-  if (written == line.size() && ::fdatasync(fd_) == 0) return;
-  const int error = errno;
-  // Half a line would only be dropped later; without it the file is good as it is.
-  [[maybe_unused]] const int cut = before < 0 ? 0 : ::ftruncate(fd_, before);
-  throw Error(ErrorKind::kIo, path_ + ": " + NameOf(record) +
-                                  " cannot be written: " + std::strerror(error) +
+  TT_CHECK(file_.has_value());
+  try {
+    file_->Append(RecordLine(record) + "\n");
+  } catch (const Error& error) {
+    throw Error(error.kind(), NameOf(record) + ": " + error.what() +
                                   "; make room and run again, all rounds before it are kept");
+  }
+  file_->RequireInPlace();
 }
 
 }  // namespace tubetwin

@@ -111,17 +111,11 @@ RoundSummary RoundScorer::Summary(const RoundReport& report,
   out.tubes_start = tubes_start_.value_or(0);
   out.placed_before = static_cast<int>(before_.tray.placed_ids.size());
   out.outside_before = static_cast<int>(before_.outside_ids.size());
-  out.attempts = static_cast<int>(attempts.size());
-  if (truth_) out.success = Counts{0, out.attempts};
-  for (const AttemptRecord& attempt : attempts) {
-    const bool placed = attempt.success.value_or(attempt.outcome == AttemptOutcome::kPlaced);
-    if (placed) {
-      ++out.first_attempt.n;
-      if (attempt.attempt == 1) ++out.first_attempt.k;
-      if (out.success) ++out.success->k;
-    }
-    if (attempt.outcome == AttemptOutcome::kDropped) ++out.dropped;
-  }
+  const AttemptCounts rows = CountAttempts(attempts);
+  out.attempts = rows.attempts;
+  out.first_attempt = rows.first_attempt;
+  out.dropped = rows.dropped;
+  if (truth_) out.success = rows.success;
   out.placed_believed = report.placed_believed;
   out.placed = truth_ ? static_cast<int>(now_.tray.placed_ids.size()) : report.placed_believed;
   out.outside = static_cast<int>(now_.outside_ids.size());

@@ -25,6 +25,19 @@ struct RoundRecord {
 /// "variant 0 round 5", as messages name it.
 std::string NameOf(const RoundRecord& record);
 
+/// What a summary tells of its attempts, counted from their rows.
+struct AttemptCounts {
+  int attempts = 0;
+  int dropped = 0;
+  Counts success;        ///< As RoundSummary's, where truth is known.
+  Counts first_attempt;  ///< As RoundSummary's.
+};
+AttemptCounts CountAttempts(const std::vector<AttemptRecord>& attempts);
+
+/// Throws Error(kBadData) naming `source` and the round when its summary does not tell what its
+/// attempts tell: a row was lost or changed.
+void RequireConsistent(const RoundRecord& record, const std::string& source);
+
 /// What stands for a round whose process left nothing: one attempt with outcome "fault" and no
 /// success, nothing placed, no end. Overwrites all but variant, round and seed.
 void SetCrashed(int tubes_start, const std::string& reason, double wall_s, RoundRecord& record);
