@@ -12,9 +12,9 @@
 namespace tubetwin {
 
 Outcome RunProgram(const TemporaryFolder& folder, const std::string& arguments,
-                   const std::string& environment) {
+                   const std::string& environment, const std::string& files) {
   const std::string command = "cd '" + folder.path() + "' && " + environment + "'" +
-                              TUBETWIN_BINARY "' " + arguments + " > out.txt 2> err.txt";
+                              TUBETWIN_BINARY "' " + arguments + " > out.txt 2> err.txt " + files;
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadFile(folder.path() + "/out.txt"),
           ReadFile(folder.path() + "/err.txt")};

@@ -11,9 +11,10 @@ struct Outcome {
   std::string out, err;
 };
 
-/// Runs `tubetwin ARGUMENTS` in `folder`; `environment` goes before it ("A=b ").
+/// Runs `tubetwin ARGUMENTS` in `folder`; `environment` goes before it ("A=b "). What `files` say
+/// ("> /dev/full", "2>&-") is used instead of the two that the outcome is read from.
 Outcome RunProgram(const TemporaryFolder& folder, const std::string& arguments,
-                   const std::string& environment = "");
+                   const std::string& environment = "", const std::string& files = "");
 
 /// Writes a file into `folder`.
 void Write(const TemporaryFolder& folder, const std::string& name, const std::string& text);

@@ -96,6 +96,10 @@ std::function<bool()> StopOnSignals() {
   const auto count = [](int) { g_stop = g_stop == 0 ? 1 : 2; };
   std::signal(SIGTERM, count);
   std::signal(SIGINT, count);
+  // A terminal that closes asks for an end, and only once however often it says so; unless `nohup`
+  // said that it does not.
+  const auto hang_up = [](int) { g_stop = g_stop == 0 ? 1 : g_stop; };
+  if (std::signal(SIGHUP, hang_up) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   return [] { return g_stop != 0; };
 }
 

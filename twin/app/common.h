@@ -42,7 +42,8 @@ void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc
 Scenario LoadScenario(const std::vector<std::string>& files, const Common& common,
                       const std::string& profile = "");
 
-/// From here on SIGTERM and SIGINT only ask for an end; the function tells whether they have.
+/// From here on SIGTERM, SIGINT and SIGHUP only ask for an end; the function tells whether they
+/// have. SIGHUP stays ignored where it was (nohup).
 std::function<bool()> StopOnSignals();
 /// Whether more than one has come since: whoever asks twice wants the arm to stand.
 bool StopAtOnceOnSignals();

@@ -1,10 +1,18 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "models/base/disk/build_id.h"
 #include "models/base/error.h"
 #include "twin/app/common.h"
 #include "twin/app/suggest.h"
@@ -19,7 +27,9 @@ constexpr const char* kDescription =
 
 int Run(int argc, char** argv) {
   CLI::App app(kDescription, "tubetwin");
-  app.set_version_flag("--version", std::string("tubetwin ") + TUBETWIN_VERSION);
+  app.set_version_flag("--version", [] {
+    return std::string("tubetwin ") + TUBETWIN_VERSION + ", build " + BuildId();
+  });
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default(false);
   Common common;
@@ -57,17 +67,60 @@ int Run(int argc, char** argv) {
   return common.action();
 }
 
+int RunAndTell(int argc, char** argv) {
+  const auto fail = [](const Error& error) {
+    std::fprintf(stderr, "tubetwin: %s\n", error.what());
+    return static_cast<int>(error.kind());
+  };
+  try {
+    return Run(argc, argv);
+  } catch (const Error& e) {
+    return fail(e);
+  } catch (const std::exception& e) {
+    if (const auto machine = MachineError(e)) return fail(*machine);
+    std::fprintf(stderr, "tubetwin: internal error: %s\n", e.what());
+    return static_cast<int>(ErrorKind::kInternal);
+  }
+}
+
+/// Where standard input, output or messages are closed, the next file that is opened would get
+/// their number, and with it every line that is printed.
+void OpenStandardFiles() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF) {
+      [[maybe_unused]] const int opened = ::open("/dev/null", O_RDWR);  // The lowest free number.
+    }
+  }
+}
+
+/// The exit code after all that was printed has left the program: whoever reads what did not
+/// arrive must not take it for whole.
+int CloseOutput(int code) {
+  bool whole = std::ferror(stdout) == 0;
+  errno = 0;
+  whole = std::fflush(stdout) == 0 && whole;
+  int error = errno;
+  std::cout.flush();  // It keeps nothing back, but knows what it could not write.
+  whole = std::cout.good() && whole;
+  // What a file server refuses only when a file is closed.
+  const int copy = ::dup(STDOUT_FILENO);
+  if (copy >= 0 && ::close(copy) != 0 && whole) {
+    whole = false;
+    error = errno;
+  }
+  if (whole) return code;
+  // The library keeps no reason of what failed before: the next byte has the same.
+  if (error == 0 && ::write(STDOUT_FILENO, "\n", 1) < 0) error = errno;
+  std::fprintf(stderr, "tubetwin: standard output cannot be written: %s\n",
+               error != 0 ? std::strerror(error) : "what was printed is not whole");
+  return code == 0 ? static_cast<int>(ErrorKind::kIo) : code;
+}
+
 }  // namespace
 }  // namespace tubetwin
 
 int main(int argc, char** argv) {
-  try {
-    return tubetwin::Run(argc, argv);
-  } catch (const tubetwin::Error& e) {
-    std::fprintf(stderr, "tubetwin: %s\n", e.what());
-    return static_cast<int>(e.kind());
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "tubetwin: internal error: %s\n", e.what());
-    return static_cast<int>(tubetwin::ErrorKind::kInternal);
-  }
+  tubetwin::OpenStandardFiles();
+  std::signal(SIGXFSZ, SIG_IGN);  // A limit on the size of files is told like a full disk.
+  return tubetwin::CloseOutput(tubetwin::RunAndTell(argc, argv));
 }

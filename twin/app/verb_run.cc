@@ -148,6 +148,10 @@ int Run(const RunOptions& run, const Common& common) {
   RoundOptions options;
   const Scenario scenario = RunScenario(run, common);
   RequireSoundCell(scenario, common);
+  if (run.video && (run.dry || !scenario.cell.IsTwin())) {
+    throw Error(ErrorKind::kUsage,
+                "--video: only a round whose whole cell is the twin's can be drawn; leave it out");
+  }
   options.out_folder = common.out;
   options.parallelism = common.parallelism();
   options.video = run.video;

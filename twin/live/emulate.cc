@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -14,6 +14,7 @@
 #include "models/base/json.h"
 #include "twin/live/emulated_cell.h"
 #include "twin/live/fault_script.h"
+#include "twin/round/folder/result_folder.h"
 #include "twin/round/twin_setup.h"
 
 namespace tubetwin {
@@ -24,22 +25,30 @@ namespace fs = std::filesystem;
 /// A pause of the machine shorter than this is caught up; clients notice nothing worse than jitter.
 constexpr TimeNs kMaxLag = std::chrono::milliseconds(40);
 
+/// What an emulation leaves in its folder.
+const std::vector<std::string> kEmulationFiles = {"cell.toml",       "events.jsonl", "gripper.tty",
+                                                  "start.pile.json", "scans",        "world.json"};
+
 /// One line per event, written by a thread of files as soon as it is free: what is there after a
 /// kill is true.
 class EventLog {
  public:
   EventLog(const std::string& path, const EmulatedCell& cell)
-      : file_(path, std::ios::trunc), path_(path), cell_(cell) {
-    if (!file_) throw Error(ErrorKind::kCannotCreate, path + ": cannot be written");
-  }
+      : file_(OutputFile::Create(path)), cell_(cell) {}
   void Write(const char* kind, const std::string& what) {
     lines_ += Json{{"at_s", Seconds(cell_.now())}, {kind, what}}.dump() + "\n";
   }
   /// Once per period. Throws Error(kIo) when the disk is full.
   void Tick() {
     if (lines_.empty() || !files_.idle()) return;
-    if (!file_) throw Error(ErrorKind::kIo, path_ + ": writing failed (disk full?)");
-    files_.Start([this, lines = std::exchange(lines_, {})] { file_ << lines << std::flush; });
+    if (failure_) throw Error(*failure_);
+    files_.Start([this, lines = std::exchange(lines_, {})] {
+      try {
+        file_.Write(lines);
+      } catch (const Error& error) {
+        failure_ = error;
+      }
+    });
   }
   /// Until all is written.
   void Finish() {
@@ -47,11 +56,13 @@ class EventLog {
       Tick();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    if (failure_) throw Error(*failure_);
   }
 
  private:
-  std::ofstream file_;  ///< Of the thread of files while it works.
-  std::string path_;
+  // Of the thread of files while it works.
+  OutputFile file_;
+  std::optional<Error> failure_;
   const EmulatedCell& cell_;
   std::string lines_;
   BackgroundTask files_;  ///< Last: ends before what it uses.
@@ -104,10 +115,9 @@ EmulateResult Emulate(const Scenario& scenario, const EmulateOptions& options) {
                                                  : ReadFaultScript(options.faults_file));
   RequireSpoken(ScenarioModel(scenario));
   const fs::path out = fs::absolute(options.out_folder);
-  MakeFolder(out.string());
+  ResultFolder folder(out.string(), {"emulate", kEmulationFiles, false});
   // Whoever waits for it must not find that of an earlier emulation.
-  fs::remove(out / "cell.toml");
-  fs::remove(out / "world.json");
+  folder.Begin({});
   const Pile asked = ScenarioPile(scenario);
   const RoundPhysics physics = ScenarioPhysics(scenario, asked.part);
   const Pile pile = StartPile(scenario, asked, physics);
@@ -143,6 +153,7 @@ EmulateResult Emulate(const Scenario& scenario, const EmulateOptions& options) {
   }
   log.Finish();
   WriteJsonFile(WhatLiesWhere(twin), (out / "world.json").string());
+  folder.End(Json{{"schema", "tubetwin/manifest/1"}}, kEmulationFiles);
   EmulateResult result;
   result.cell_s = Seconds(cell.now());
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

@@ -33,8 +33,9 @@ struct EmulateResult {
 /// until asked to stop. The folder gets events.jsonl (moments of the cycle, motions, faults: one
 /// line each as they come), scans/, start.pile.json, cell.toml last, when every port listens, and
 /// at the end world.json: what lies where, by truth. When the machine is too slow all clocks
-/// stretch together. Throws Error(kDevice) when a port cannot be had, and as ScenarioPile and
-/// ReadFaultScript do.
+/// stretch together. Throws Error(kDevice) when a port cannot be had, Error(kCannotCreate) when
+/// another emulation fills the folder or files there are not an emulation's, and as ScenarioPile
+/// and ReadFaultScript do.
 EmulateResult Emulate(const Scenario& scenario, const EmulateOptions& options);
 
 }  // namespace tubetwin

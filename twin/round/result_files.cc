@@ -8,10 +8,12 @@
 #include <fstream>
 #include <sstream>
 
+#include "models/base/disk/build_id.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "scenes/engine/engine_error.h"
+#include "twin/round/folder/file_checks.h"
 #include "twin/round/records/throughput.h"
 
 namespace tubetwin {
@@ -45,11 +47,11 @@ std::string ResolvedToml(const Scenario& scenario) {
   return WriteToml([&copy](ConfigVisitor& v) { copy.Visit(v); }, false);
 }
 
-void ClaimResultFolder(const std::string& folder, const std::string& resolved_toml, bool force) {
-  MakeFolder(folder);
+void RequireSameConfiguration(const std::string& folder, const std::string& resolved_toml) {
   const fs::path rows = fs::path(folder) / "picks.jsonl";
   const fs::path config = fs::path(folder) / "config.resolved.toml";
-  if (force || !fs::exists(rows)) return;
+  // What belongs to a campaign is refused as a campaign.
+  if (!fs::exists(rows) || fs::exists(fs::path(folder) / "campaign.json")) return;
   if (!fs::exists(config) || ReadFile(config.string()) != resolved_toml) {
     throw Error(ErrorKind::kCannotCreate,
                 folder + ": holds the rows of another configuration (" + config.string() +
@@ -96,12 +98,14 @@ void WriteRoundRecord(const RoundRecord& record, const std::string& folder) {
 
 RoundRecord ReadRoundRecord(const std::string& folder) {
   const fs::path at(folder);
+  RequireWholeFiles(folder, {"picks.jsonl", "summary.json"}, /*always=*/false);
   RoundRecord record;
   const std::string file = (at / "summary.json").string();
   const Json summary = ReadJsonFile(file);
   record.summary = SummaryFromJson(JsonView(summary, file));
   ReadJsonLines((at / "picks.jsonl").string(),
                 [&](const JsonView& row) { record.attempts.push_back(AttemptFromJson(row)); });
+  RequireConsistent(record, (at / "picks.jsonl").string());
   const std::string timings = (at / "timings.jsonl").string();
   if (!fs::exists(timings)) return record;
   ReadJsonLines(timings,
@@ -116,6 +120,7 @@ Json Manifest(const Scenario& scenario, const std::string& resolved_toml,
   Json out;
   out["schema"] = "tubetwin/manifest/1";
   out["program"] = program_version;
+  out["build"] = BuildId();
   out["mujoco"] = EngineVersion();
   out["compiler"] = __VERSION__;
   out["seed"] = scenario.seed;

@@ -14,10 +14,8 @@ namespace tubetwin {
 /// Text of the scenario with every key written out; reading it again gives the same scenario.
 std::string ResolvedToml(const Scenario& scenario);
 
-/// Claims `folder` for a round of this configuration: creates it, and refuses with
-/// Error(kCannotCreate) when it holds picks.jsonl of another configuration and not `force`. Other
-/// files are left alone.
-void ClaimResultFolder(const std::string& folder, const std::string& resolved_toml, bool force);
+/// Refuses a folder with picks.jsonl of another configuration: throws Error(kCannotCreate).
+void RequireSameConfiguration(const std::string& folder, const std::string& resolved_toml);
 
 /// One JSON object per line, each without line breaks; written atomically.
 void WriteJsonLines(const std::vector<Json>& rows, const std::string& path);
@@ -27,12 +25,13 @@ void ReadJsonLines(const std::string& path, const std::function<void(const JsonV
 
 /// Writes picks.jsonl, timings.jsonl and summary.json of a round's own folder.
 void WriteRoundRecord(const RoundRecord& record, const std::string& folder);
-/// Reads them back; timings may be missing. Throws Error(kMissing | kBadData).
+/// Reads them back; timings may be missing. Throws Error(kMissing), and Error(kBadData) for rows
+/// that cannot be read, are not what the manifest beside them says, or contradict their summary.
 RoundRecord ReadRoundRecord(const std::string& folder);
 /// Content of a round's summary.json: the summary, and behind it the measures that `metrics` add.
 Json RoundSummaryJson(const RoundRecord& record, const std::vector<Metric>& metrics = Metrics());
 
-/// manifest.json: versions, seeds, machine, fingerprint of the configuration, start time. The one
+/// manifest.json: versions, build, seeds, machine, fingerprint of the configuration, end. The one
 /// file besides timings.jsonl that holds what a clock or a machine said.
 Json Manifest(const Scenario& scenario, const std::string& resolved_toml,
               const std::string& program_version, int threads, double wall_s);

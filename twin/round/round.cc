@@ -2,14 +2,18 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
+#include <memory>
 
 #include "hw_bridge/recording/cell_recorder.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "models/base/step_timer.h"
+#include "twin/render/gl/egl_context.h"
 #include "twin/round/archive.h"
 #include "twin/round/failure_picture.h"
+#include "twin/round/folder/result_folder.h"
 #include "twin/round/replay_round.h"
 #include "twin/round/result_files.h"
 #include "twin/round/round_checkpoint.h"
@@ -20,27 +24,39 @@ namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
 
+/// What is drawn or told of rows and may be made anew at any time.
+constexpr const char* kNamedOnly[] = {"report.html", "video.mp4", "picture.png", "links.json",
+                                      "dry_run.json"};
+
 /// The cell and the scorer of a stored round, as they were where it was stored.
 void Resume(const RoundCheckpoint& held, TwinCell& twin, TwinRoundRecorder& recorder) {
   twin.Restore(held.cell());
   recorder.Resume(held.scorer);
 }
 
-/// Recording, film and report.
-void WriteRecord(const TwinRoundRecorder& recorder, const RoundOptions& options) {
+void Draw(const TwinRoundRecorder& recorder, const RoundOptions& options) {
   const fs::path out(options.out_folder);
-  WriteRecording(recorder.recording(), (out / "recording.bin").string());
-  if (options.video) {
-    if (options.progress) options.progress("drawing the film");
-    RenderPicture(recorder.recording(), 0, (out / "picture.png").string());
-    RenderFilm(recorder.recording(), (out / "video.mp4").string(), 1, options.parallelism);
-    for (std::size_t i = 0; i < recorder.attempts.size(); ++i) {
-      if (recorder.attempts[i].success == true) continue;
-      DrawFailurePicture(recorder.recording(), static_cast<int>(i), recorder.attempts[i],
-                         options.out_folder);
-    }
+  if (options.progress) options.progress("drawing the film");
+  RenderPicture(recorder.recording(), 0, (out / "picture.png").string());
+  RenderFilm(recorder.recording(), (out / "video.mp4").string(), 1, options.parallelism);
+  for (std::size_t i = 0; i < recorder.attempts.size(); ++i) {
+    if (recorder.attempts[i].success == true) continue;
+    DrawFailurePicture(recorder.recording(), static_cast<int>(i), recorder.attempts[i],
+                       options.out_folder);
+  }
+}
+
+/// Recording, film and report. Gives back why there is no film: the rest is there all the same.
+std::optional<Error> WriteRecord(const TwinRoundRecorder& recorder, const RoundOptions& options) {
+  std::optional<Error> undrawn;
+  WriteRecording(recorder.recording(), (fs::path(options.out_folder) / "recording.bin").string());
+  try {
+    if (options.video) Draw(recorder, options);
+  } catch (const Error& error) {
+    undrawn = error;
   }
   if (options.write_report) options.write_report(options.out_folder);
+  return undrawn;
 }
 
 /// What a round's pipeline is made of; lives as long as the round.
@@ -50,6 +66,7 @@ struct Pipeline {
   const Part& part;
   const std::optional<RoundCheckpoint>& held;
   const RoundOptions& options;
+  ResultFolder& folder;
 };
 
 /// Runs the pick cycle on `cell`, recorded if asked to, and writes configuration, rows, summary.
@@ -57,13 +74,14 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
   const RoundOptions& options = pipeline.options;
   const fs::path out(options.out_folder);
   WriteFileAtomically((out / "config.resolved.toml").string(), pipeline.resolved_toml);
-  fs::remove_all(out / "failures");
-  fs::remove(out / kCellRecordingFile);
   PickCycleSetup setup =
       ScenarioCycle(pipeline.scenario, plain.model, pipeline.part, options.parallelism);
-  setup.stop_requested = options.stop_requested;
-  setup.acknowledge = options.acknowledge;
   std::optional<CellRecorder> cell_recorder;
+  setup.stop_requested = [&] {
+    return (options.stop_requested && options.stop_requested()) ||
+           (cell_recorder && cell_recorder->failure());
+  };
+  setup.acknowledge = options.acknowledge;
   if (options.record_cell) {
     cell_recorder.emplace(plain,
                           CellHeader(pipeline.scenario, pipeline.resolved_toml,
@@ -76,7 +94,12 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
   const RoundReport report = pipeline.held
                                  ? ResumeAttempt(cell, setup, pipeline.held->cycle, recorder)
                                  : RunPickCycle(cell, setup, recorder);
-  if (cell_recorder) EndRecording(*cell_recorder, report);
+  std::optional<Error> unrecorded;
+  try {
+    if (cell_recorder) EndRecording(*cell_recorder, report);
+  } catch (const Error& error) {
+    unrecorded = error;  // The rows come first.
+  }
   if (options.replay != nullptr) EndReplay(*options.replay, report);
 
   recorder.OnRoundEnd(report);
@@ -90,7 +113,41 @@ RoundResult RunPipeline(Cell& plain, const Pipeline& pipeline, RoundRecorder& re
   result.record.attempts = recorder.attempts;
   result.record.timings = recorder.timings;
   WriteRoundRecord(result.record, options.out_folder);
+  if (unrecorded) throw Error(*unrecorded);
   return result;
+}
+
+/// Takes the folder for a round of this configuration.
+std::unique_ptr<ResultFolder> ClaimForRound(const RoundOptions& options,
+                                            const std::vector<ArchivedFile>& inputs,
+                                            const std::string& resolved_toml) {
+  ResultFolder::Claim claim{"run", {}, options.force};
+  claim.names = {
+      "config.resolved.toml", "given.pile.json", "start.pile.json", "cell.xml", "picks.jsonl",
+      "timings.jsonl",        "summary.json",    "recording.bin",   "failures", kCellRecordingFile,
+      kRoundCheckpointFile};
+  claim.names.insert(claim.names.end(), std::begin(kNamedOnly), std::end(kNamedOnly));
+  for (const ArchivedFile& input : inputs) claim.names.push_back(input.name);
+  if (!options.force) RequireSameConfiguration(options.out_folder, resolved_toml);
+  return std::make_unique<ResultFolder>(options.out_folder, claim);
+}
+
+/// What a real cell did before its program ended on the way is there once.
+void RequireNoUnendedRows(const std::string& folder) {
+  const fs::path rows = fs::path(folder) / "picks.jsonl";
+  if (!fs::exists(rows) || fs::file_size(rows) == 0) return;
+  if (fs::exists(fs::path(folder) / "summary.json")) return;
+  throw Error(ErrorKind::kCannotCreate,
+              rows.string() +
+                  ": holds the attempts of a round that did not end, which nobody can "
+                  "repeat; give another --out, or --force to replace them");
+}
+
+/// Removes what an earlier round left, but for what this one may have been read from.
+void BeginRound(ResultFolder& folder, const std::vector<ArchivedFile>& inputs) {
+  std::vector<std::string> replaced = {"given.pile.json", "config.resolved.toml"};
+  for (const ArchivedFile& input : inputs) replaced.push_back(input.name);
+  folder.Begin(replaced);
 }
 
 void WriteInputs(const std::vector<ArchivedFile>& inputs, const fs::path& out) {
@@ -101,9 +158,9 @@ void WriteInputs(const std::vector<ArchivedFile>& inputs, const fs::path& out) {
 
 void WriteManifest(const Pipeline& pipeline, double wall_s) {
   const RoundOptions& options = pipeline.options;
-  WriteJsonFile(Manifest(pipeline.scenario, pipeline.resolved_toml, options.program_version,
-                         options.parallelism.threads, wall_s),
-                (fs::path(options.out_folder) / "manifest.json").string());
+  Json manifest = Manifest(pipeline.scenario, pipeline.resolved_toml, options.program_version,
+                           options.parallelism.threads, wall_s);
+  pipeline.folder.End(std::move(manifest), {std::begin(kNamedOnly), std::end(kNamedOnly)});
 }
 
 }  // namespace
@@ -116,6 +173,7 @@ std::string FailureFolderName(int row) {
 
 RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   RequireTwin(given, "this round");
+  if (options.video) EglContext();  // Whether there are images is known before the round.
   const double began = WallClock_s();
   Scenario scenario = given;
   const std::optional<RoundCheckpoint> held = ReadRoundCheckpoint(scenario);
@@ -129,10 +187,11 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   if (archive_pile) archived.pile.file = "given.pile.json";
   const std::vector<ArchivedFile> inputs = ArchiveInputs(archived);
   const std::string resolved = ResolvedToml(archived);
-  ClaimResultFolder(options.out_folder, resolved, options.force);
+  const auto folder = ClaimForRound(options, inputs, resolved);
 
   const RoundPhysics physics = ScenarioPhysics(scenario, asked.part);
   const Pile pile = held ? asked : StartPile(scenario, asked, physics);
+  BeginRound(*folder, inputs);
   if (held) {
     WriteJsonFile(held->document, (out / "given.pile.json").string());
   } else if (archive_pile) {
@@ -146,7 +205,7 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   WriteFileAtomically((out / "cell.xml").string(), twin.ModelXml());
 
   TwinRoundRecorder recorder(twin, pile, std::move(visuals), options);
-  fs::remove(out / kRoundCheckpointFile);
+  recorder.folder = folder.get();
   recorder.on_several = [&](const AttemptCheckpoint& state, const ScorerState& scorer) {
     twin.WakeAll();  // Whether it is stored or not: both go on alike.
     if (!scenario.cycle.end_at_several) return;
@@ -154,14 +213,16 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
                         (out / kRoundCheckpointFile).string());
   };
   if (held) Resume(*held, twin, recorder);
-  const Pipeline pipeline{scenario, resolved, asked.part, held, options};
+  const Pipeline pipeline{scenario, resolved, asked.part, held, options, *folder};
   RoundResult result = RunPipeline(twin.cell(), pipeline, recorder);
   const double cycle_wall_s = WallClock_s() - began;
+  std::optional<Error> undrawn;
   if (options.keep == RoundKeep::kAll ||
       (options.keep == RoundKeep::kFailures && recorder.AnyFailure())) {
-    WriteRecord(recorder, options);
+    undrawn = WriteRecord(recorder, options);
   }
   WriteManifest(pipeline, cycle_wall_s);
+  if (undrawn) throw Error(*undrawn);
   return result;
 }
 
@@ -172,14 +233,14 @@ RoundResult RunCellRound(Cell& cell, const Scenario& scenario, const RoundOption
   Scenario archived = scenario;
   const std::vector<ArchivedFile> inputs = ArchiveInputs(archived);
   const std::string resolved = ResolvedToml(archived);
-  ClaimResultFolder(options.out_folder, resolved, options.force);
+  const auto folder = ClaimForRound(options, inputs, resolved);
+  if (!options.force) RequireNoUnendedRows(options.out_folder);
+  BeginRound(*folder, inputs);
   WriteInputs(inputs, out);
-  // Of a round of the twin that was here: they would be taken for this one's.
-  for (const char* name : {"start.pile.json", "cell.xml", "recording.bin", kRoundCheckpointFile}) {
-    fs::remove(out / name);
-  }
   RoundRecorder recorder(RoundScorer(), options);
-  const Pipeline pipeline{scenario, resolved, part, std::nullopt, options};
+  recorder.folder = folder.get();
+  recorder.SaveRowsAtOnce();
+  const Pipeline pipeline{scenario, resolved, part, std::nullopt, options, *folder};
   RoundResult result = RunPipeline(cell, pipeline, recorder);
   const double cycle_wall_s = WallClock_s() - began;
   if (options.keep == RoundKeep::kAll && options.write_report) {

@@ -12,10 +12,7 @@ namespace fs = std::filesystem;
 void SaveRoundCheckpoint(const Pile& start, std::int64_t seed, const Json& cell,
                          const AttemptCheckpoint& cycle, const ScorerState& scorer,
                          const std::string& path) {
-  const fs::path half = path + ".half";  // Never seen as a state.
-  SavePile(start, half.string());
-  Json document = ReadJsonFile(half.string());
-  fs::remove(half);
+  Json document = ToJson(start);
   document["held"] =
       Json{{"seed", seed}, {"cell", cell}, {"cycle", ToJson(cycle)}, {"scorer", ToJson(scorer)}};
   WriteJsonFile(document, path);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "models/base/cloud/packed_cloud.h"
+#include "models/base/files.h"
 #include "models/base/json.h"
 #include "models/base/step_timer.h"
 #include "twin/cell/truth.h"
@@ -71,8 +72,22 @@ void RoundRecorder::OnRoundEnd(const RoundReport& report) {
   timings.push_back({kAfterLastAttempt, report.compute_s, WallClock_s() - attempt_began_});
 }
 
+void RoundRecorder::SaveRowsAtOnce() {
+  const auto begin = [&](const char* name) {
+    const std::string path = (fs::path(options_.out_folder) / name).string();
+    WriteFileAtomically(path, "");  // Its name is on the disk, too.
+    return OutputFile::Continue(path);
+  };
+  picks_.emplace(begin("picks.jsonl"));
+  timings_file_.emplace(begin("timings.jsonl"));
+}
+
 void RoundRecorder::Conclude() {
   const AttemptRecord& last = attempts.back();
+  if (picks_) {
+    picks_->Append(ToJson(last, RowPlace()).dump() + "\n");
+    timings_file_->Append(ToJson(timings.back(), RowPlace()).dump() + "\n");
+  }
   const bool failed = !last.success.value_or(last.outcome == AttemptOutcome::kPlaced);
   if (options_.keep != RoundKeep::kRows && failed) SaveFailure();
 }
@@ -84,11 +99,19 @@ bool RoundRecorder::AnyFailure() const {
 
 void RoundRecorder::SaveFailure() {
   const std::string name = FailureFolderName(static_cast<int>(attempts.size()) - 1);
-  const std::string folder = (fs::path(options_.out_folder) / "failures" / name).string();
-  WriteJsonFile(ToJson(attempts.back(), RowPlace()), folder + "/attempt.json");
-  OnFailure(folder);
-  for (const std::size_t i : ViewsOfFailure(last_views_, attempts.back())) {
-    WritePackedPcd(last_views_[i], folder + "/view_" + std::to_string(i) + ".pcd.zst");
+  const std::vector<std::size_t> views = ViewsOfFailure(last_views_, attempts.back());
+  const auto view_file = [](std::size_t i) { return "view_" + std::to_string(i) + ".pcd.zst"; };
+  if (folder != nullptr) {
+    std::vector<std::string> names = {"attempt.json", "state.pile.json", "picture.jpg", "film.mp4"};
+    for (const std::size_t i : views) names.push_back(view_file(i));
+    for (std::string& file : names) file = "failures/" + name + "/" + file;
+    folder->Add(names);
+  }
+  const std::string to = (fs::path(options_.out_folder) / "failures" / name).string();
+  WriteJsonFile(ToJson(attempts.back(), RowPlace()), to + "/attempt.json");
+  OnFailure(to);
+  for (const std::size_t i : views) {
+    WritePackedPcd(last_views_[i], to + "/" + view_file(i));
   }
 }
 

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "hw_bridge/recording/cell_recorder.h"
+#include "models/base/disk/output_file.h"
 #include "planner/cycle/pick_cycle.h"
 #include "twin/cell/twin_cell.h"
 #include "twin/render/recording.h"
+#include "twin/round/folder/result_folder.h"
 #include "twin/round/round.h"
 #include "twin/round/scoring.h"
 
@@ -44,7 +46,12 @@ class RoundRecorder : public CycleObserver {
 
   std::vector<AttemptRecord> attempts;
   std::vector<AttemptTiming> timings;
-  CellRecorder* tape = nullptr;  ///< Of the cell; null: it is not recorded.
+  CellRecorder* tape = nullptr;    ///< Of the cell; null: it is not recorded.
+  ResultFolder* folder = nullptr;  ///< Hears what is kept of failures before it is written.
+
+  /// From here on each row is saved as its attempt ends, in picks.jsonl and timings.jsonl of
+  /// `folder`: what a real cell did cannot be repeated. Throws Error(kCannotCreate | kIo).
+  void SaveRowsAtOnce();
 
  protected:
   /// An attempt failed; its row is the last. `folder` exists and holds attempt.json and clouds.
@@ -59,6 +66,7 @@ class RoundRecorder : public CycleObserver {
  private:
   void SaveFailure();
   double attempt_began_ = 0.0;
+  std::optional<OutputFile> picks_, timings_file_;  ///< Nothing: rows are written at the end.
 };
 
 /// The same in the twin: rows by truth, and what the world looked like. Truth is looked at a while
