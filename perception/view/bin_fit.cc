@@ -19,7 +19,6 @@ constexpr double kLow_m = 0.012, kHigh_m = 1.2, kFar_m = 3.0;
 constexpr double kLowestTop_m = 0.03;
 /// Patches this close to a side, first and then, are the side's.
 constexpr double kCatch_m = 0.010, kOfSide_m = 0.005;
-constexpr double kCosineInward = 0.95;
 /// A side is seen with this share of the patches of all, over this length and share of the height.
 constexpr double kSeenShare = 0.05, kSeenLength_m = 0.06, kSeenHeight = 0.4, kSeenHeight_m = 0.04;
 constexpr int kSeenPatches = 15;
@@ -27,6 +26,11 @@ constexpr int kSeenPatches = 15;
 constexpr double kMeanOff_m = 0.0025, kHigher_m = 0.008, kHigherShare = 0.2;
 /// A side that is seen up to here before its corners is seen whole.
 constexpr double kCorner_m = 0.02;
+/// A corner's rim: how wide a piece of it, where beside the corner, at which height, and how many
+/// points of those there.
+constexpr double kRim_m = 0.012, kBesideLow_m = 0.015, kBesideHigh_m = 0.08, kRimHeight_m = 0.008;
+constexpr int kFewestRim = 8;
+constexpr double kRimShare = 0.6;
 /// A wall that goes on beyond its corner by this much is no side's.
 constexpr double kLonger_m = 0.012;
 /// Another wall this long does not stand inside the bin, this far from its side.
@@ -38,10 +42,6 @@ constexpr double kFloorSquare_m = 0.02, kSeenFloorShare = 0.05;
 constexpr double kBelowFloor = 0.01, kSeenThrough_m = 0.06, kPiece_m = 0.02;
 constexpr int kFewestThrough = 4;
 constexpr std::size_t kAsked = 60000;  ///< Points that are asked.
-/// A wall this close to where the bin's would be, by a pose that may be a little off, is the bin's.
-constexpr double kInPlace_m = 0.006;
-/// Distance of two walls that is another than the bin's.
-constexpr double kOtherSize_m = 0.005;
 
 /// The rectangle on its plane: yaw of the long side and centre.
 struct Rectangle {
@@ -57,14 +57,6 @@ double Out(const Vector3& p_N, std::size_t side, const Bin& bin) {
   const int axis = side < 2 ? 0 : 1;
   const double sign = side % 2 == 0 ? -1.0 : 1.0;
   return sign * p_N[axis] - (axis == 0 ? bin.half_x_m() : bin.half_y_m());
-}
-
-/// The side whose inner face shows along `facing_N`; 4: none.
-std::size_t SideFacing(const Eigen::Vector2d& facing_N) {
-  if (facing_N.x() > kCosineInward) return 0;
-  if (facing_N.x() < -kCosineInward) return 1;
-  if (facing_N.y() > kCosineInward) return 2;
-  return facing_N.y() < -kCosineInward ? 3 : 4;
 }
 
 /// What is seen of one side.
@@ -233,14 +225,36 @@ std::string OddSides(const SeenSides& sides, const Bin& bin) {
   return {};
 }
 
+/// Whether the corner at the low (0) or high (1) end of a side is seen: by the next wall's face, or
+/// by its rim beside the corner.
+bool SeesCorner(const BinFit& fit, std::size_t side, std::size_t end, const BinView& view,
+                const Bin& bin) {
+  const std::size_t next = (side < 2 ? 2 : 0) + end;
+  if (fit.seen_walls[next]) return true;
+  int rim = 0, all = 0;
+  for (const Vector3& p_P : view.p_P) {
+    const Vector3 q = fit.X_NP * p_P;
+    const double beyond = Out(q, next, bin), inward = -Out(q, side, bin);
+    if (beyond < 0.0 || beyond > kRim_m || inward < kBesideLow_m || inward > kBesideHigh_m)
+      continue;
+    ++all;
+    rim += std::abs(q.z() - bin.wall_m()) < kRimHeight_m;
+  }
+  return rim >= kFewestRim && rim > kRimShare * all;
+}
+
 /// Whether a side is seen from corner to corner, or two that face each other.
-bool ShowsSize(const SeenSides& sides, const std::array<bool, 4>& seen, const Bin& bin) {
+bool ShowsSize(const SeenSides& sides, const BinFit& fit, const BinView& view, const Bin& bin) {
+  const auto& seen = fit.seen_walls;
   if ((seen[0] && seen[1]) || (seen[2] && seen[3])) return true;
   for (std::size_t k = 0; k < 4; ++k) {
     if (!seen[k]) continue;
     const auto [low, high] = std::minmax_element(sides[k].along_m.begin(), sides[k].along_m.end());
     const double half_m = k < 2 ? bin.half_y_m() : bin.half_x_m();
-    if (*low<kCorner_m - half_m&& * high> half_m - kCorner_m) return true;
+    if (*low<kCorner_m - half_m&& * high> half_m - kCorner_m && SeesCorner(fit, k, 0, view, bin) &&
+        SeesCorner(fit, k, 1, view, bin)) {
+      return true;
+    }
   }
   return false;
 }
@@ -253,7 +267,7 @@ BinFit FitOf(const Rectangle& first, const BinView& view, const Bin& bin) {
   for (std::size_t k = 0; k < 4; ++k) {
     out.seen_walls[k] = sides[k].Has(AllPatches(sides), bin);
   }
-  out.shows_size = ShowsSize(sides, out.seen_walls, bin);
+  out.shows_size = ShowsSize(sides, out, view, bin);
   out.seen_floor = SeenFloorOf(out.X_NP, view, bin);
   JudgeSights(view, bin, out);
   out.odd = OddSides(sides, bin);
@@ -276,6 +290,14 @@ std::vector<double> Centres(const WallLines& walls, int axis, double size_m) {
 }
 
 }  // namespace
+
+std::size_t SideFacing(const Eigen::Vector2d& facing_N) {
+  constexpr double kCosineInward = 0.95;
+  if (facing_N.x() > kCosineInward) return 0;
+  if (facing_N.x() < -kCosineInward) return 1;
+  if (facing_N.y() > kCosineInward) return 2;
+  return facing_N.y() < -kCosineInward ? 3 : 4;
+}
 
 BinView::Walls WallsOf(const BinView& view, const Bin& bin) {
   std::vector<Vector3> points, eyes;
@@ -324,43 +346,6 @@ bool IsSound(const BinFit& fit, const Bin& bin) {
   return (w[0] || w[1]) && (w[2] || w[3]) && fit.odd.empty() &&
          fit.seen_floor >= LeastSeenFloor(bin) && fit.below_floor <= kBelowFloor &&
          fit.seen_through_m <= kSeenThrough_m;
-}
-
-std::string WrongSize(const BinView::Walls& walls, const Bin& bin) {
-  for (const WallLine& a : walls.lines.lines) {
-    for (const WallLine& b : walls.lines.lines) {
-      const double apart_m = -b.offset_m - a.offset_m;
-      // Their extents along run against each other.
-      const double common_m = std::min(a.high_m, -b.low_m) - std::max(a.low_m, -b.high_m);
-      if (b.direction != a.direction + 2 || apart_m < 0.05 || common_m < kInsideWall_m) continue;
-      if (std::abs(apart_m - bin.size_m[0]) > kOtherSize_m &&
-          std::abs(apart_m - bin.size_m[1]) > kOtherSize_m) {
-        char text[80];
-        std::snprintf(text, sizeof text, "two walls %.3f m apart are seen", apart_m);
-        return text;
-      }
-    }
-  }
-  return {};
-}
-
-BinView::Walls WithoutSides(const BinView::Walls& walls, const Bin& bin) {
-  std::array<bool, 2> in_place{};
-  const auto side_of = [&](const WallLine& line) {
-    return SideFacing(DirectionOf(walls.lines.yaw_rad, line.direction));
-  };
-  for (const WallLine& line : walls.lines.lines) {
-    const std::size_t side = side_of(line);
-    if (side > 3) continue;
-    const double half_m = side < 2 ? bin.half_x_m() : bin.half_y_m();
-    in_place[side / 2] |= std::abs(-line.offset_m - half_m) < kInPlace_m;
-  }
-  BinView::Walls out = walls;
-  std::erase_if(out.lines.lines, [&](const WallLine& line) {
-    const std::size_t side = side_of(line);
-    return side > 3 || in_place[side / 2];
-  });
-  return out;
 }
 
 std::array<bool, 4> TurnedWalls(const std::array<bool, 4>& walls, const RigidTransform& turn) {

@@ -50,13 +50,8 @@ double LeastSeenFloor(const Bin& bin);
 /// Whether nothing speaks against a fit.
 bool IsSound(const BinFit& fit, const Bin& bin);
 
-/// What two walls that face each other, or the walls' height, say about the size; empty when that
-/// is the bin's.
-std::string WrongSize(const BinView::Walls& walls, const Bin& bin);
-
-/// The walls of P = N without those parallel to a side of the bin that is seen in its place: that
-/// size is right, and what faces it is no wall of another bin.
-BinView::Walls WithoutSides(const BinView::Walls& walls, const Bin& bin);
+/// The side whose inner face shows along `facing_N`: 0 (-x), 1 (+x), 2 (-y), 3 (+y); 4: none.
+std::size_t SideFacing(const Eigen::Vector2d& facing_N);
 
 /// The walls' names after N was turned about z by a multiple of 90 degrees: p_new = turn * p_old.
 std::array<bool, 4> TurnedWalls(const std::array<bool, 4>& walls, const RigidTransform& turn);

@@ -11,6 +11,7 @@
 #include "models/base/text.h"
 #include "perception/view/bin_evidence.h"
 #include "perception/view/bin_fit.h"
+#include "perception/view/bin_size.h"
 
 namespace tubetwin {
 namespace {

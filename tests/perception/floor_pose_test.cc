@@ -135,6 +135,19 @@ TEST_CASE("A corner alone may be either of two, and is refused with both places"
   CHECK_THAT(why, Catch::Contains("0.25, ") && Catch::Contains("0.15, 0.40)"));
 }
 
+TEST_CASE("A wall that the image cuts off is not as long as what is seen of it", "[unit]") {
+  RandomStream stream(11, 0, "floor pose test");
+  const ToyScene scene = SomeScene(stream, {0.77, 0.58, 0.09}, 0);
+  ToyCamera camera = Camera();
+  camera.width = 300;
+  // Of the long wall 0.575 m are seen, about the short side's length.
+  const RigidTransform X_NS = LookDown({-0.194, 0.1, 0.8});
+  const FloorWays found =
+      FindFloorWays({Stripped(ToyScan(scene, camera, X_NS, stream.Fork("cut")))}, scene.bin);
+  REQUIRE(found.ways.size() == 2);
+  for (const FloorWay& way : found.ways) CHECK_FALSE(way.shows_size);
+}
+
 TEST_CASE("Another bin than the one given is told by what is seen of it", "[unit]") {
   RandomStream stream(6, 0, "floor pose test");
   ToyScene scene = SomeScene(stream, {0.77, 0.58, 0.12}, 2);
