@@ -25,8 +25,9 @@ using SteadyClock = std::chrono::steady_clock;
 // Fits into the buffer that every UDP socket has at first (208 KiB with the kernel's own overhead),
 // twice over.
 constexpr std::size_t kBurst = 64000;
-/// A client whose port keeps as much as that for so long reads elsewhere.
-constexpr auto kMaxSilence = std::chrono::milliseconds(500);
+/// A client whose port keeps as much as that for so long reads elsewhere. aravis gives a frame up
+/// that ceases for 100 ms; what a slow client loses meanwhile it asks for again.
+constexpr auto kMaxSilence = std::chrono::milliseconds(40);
 constexpr double kEthernetBytesPerS = 100e6;
 
 /// Bytes that wait to be read at a UDP port of this machine; nothing when nobody has it.
@@ -63,11 +64,15 @@ struct GvspSender::Impl {
   /// Waits until the client can take a burst; false when there is no hope.
   bool AwaitRoom(const GvspClient& to, const std::atomic<bool>& stop) {
     const auto began = SteadyClock::now();
-    while (!by_time && !stop) {
-      const std::optional<unsigned long> unread = Unread(to);
+    while (!stop) {
+      const std::optional<unsigned long> unread = to_loopback ? Unread(to) : 0;
       if (!unread) return false;
-      if (*unread < kBurst) return true;
-      by_time = SteadyClock::now() - began > kMaxSilence;
+      if (to_loopback && *unread < kBurst) {
+        by_time = false;
+        return true;
+      }
+      by_time = by_time || !to_loopback || SteadyClock::now() - began > kMaxSilence;
+      if (by_time) break;
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     const auto burst = std::chrono::duration<double>(kBurst / kEthernetBytesPerS);
@@ -102,6 +107,7 @@ struct GvspSender::Impl {
 
   asio::io_context io;
   udp::socket socket;
+  bool to_loopback = false;
   bool by_time = false;  ///< The client's port does not tell how fast it reads.
   std::mutex mutex;      ///< Of `newest`.
   std::shared_ptr<const Frame> newest;
@@ -121,7 +127,8 @@ void GvspSender::Send(Frame given, const GvspClient& to, const std::atomic<bool>
   }
   const asio::ip::address_v4 address(to.address);
   const udp::endpoint client(address, static_cast<std::uint16_t>(to.port));
-  impl_->by_time = !address.is_loopback();
+  impl_->to_loopback = address.is_loopback();
+  impl_->by_time = false;
   const std::size_t packets = Impl::Packets(*frame);
   const auto sent = static_cast<std::size_t>(
       std::floor(std::clamp(frame->sent_share, 0.0, 1.0) * static_cast<double>(packets)));
