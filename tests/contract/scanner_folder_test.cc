@@ -71,11 +71,12 @@ TEST_CASE("A damaged answer is a failed scan that names file and place; the next
   }
   SECTION("garbage") {
     rig.emulator.faults().Order(ScanFault::kGarbage, 1);
-    CHECK_THAT(FailedScan(rig), Contains(file + ":1: ") && Contains("is no header text"));
+    CHECK_THAT(FailedScan(rig), Contains(file + ":1: ") && Contains("is no PCD header entry"));
   }
   SECTION("corrupted on its way") {
     rig.emulator.link().corrupt = true;
-    CHECK_THAT(FailedScan(rig), Contains(file + ":2: 'VE?SION' is no PCD header"));
+    CHECK_THAT(FailedScan(rig),
+               Contains(file + ":2: 'VE\\x") && Contains("SION' is no PCD header"));
     rig.emulator.link().corrupt = false;
   }
   SECTION("points that no scanner sees") {

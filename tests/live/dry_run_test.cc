@@ -37,11 +37,15 @@ TEST_CASE("In a dry run trajectories pass in thought and the real devices hear n
 
 TEST_CASE("Rehearsed fingers stop at what they would hold, and open again", "[unit]") {
   test::RestlessCell real(3);
-  DryRunCell dry(real.cell(), 0.025);
+  DryRunCell dry(real.cell(), {0.025, 0.2});
   Cell& cell = dry.cell();
+  const Vector3 empty_N = AverageWrench(cell, 0.1).mean_K.force_N;
   const GripperState closed = MoveGripper(cell, {0.0, 0.1, 60.0}).state;
   CHECK(closed.opening_m == Approx(0.025));
   CHECK(closed.object == GripperObject::kContactClosing);
+  constexpr double kNoise_N = 0.3;  // The cell's wrist is restless; 0.2 kg weigh 1.96 N.
+  const Vector3 held_N = AverageWrench(cell, 0.1).mean_K.force_N - empty_N;
+  CHECK(held_N.norm() == Approx(0.2 * kGravity).margin(kNoise_N));
   CHECK(MoveGripper(cell, {0.06, 0.1, 60.0}).state.opening_m == Approx(0.06));
   CHECK(cell.gripper.State().object == GripperObject::kAtPosition);
   CHECK(MoveGripper(cell, {0.03, 0.1, 60.0}).state.opening_m == Approx(0.03));  // Wider than it.

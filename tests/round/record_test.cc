@@ -122,6 +122,7 @@ TEST_CASE("a round's folder gives back what was written into it", "[unit]") {
   record.timings = {{3, std::nullopt, 1.0}, {1, std::nullopt, 2.0}};
   record.summary.end = RoundEnd::kNoPlan;
   record.summary.attempts = 2;
+  record.summary.first_attempt = CountAttempts(record.attempts).first_attempt;
   record.summary.success = Counts{1, 2};
   WriteRoundRecord(record, folder.path());
   const RoundRecord read = ReadRoundRecord(folder.path());

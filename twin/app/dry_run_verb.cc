@@ -56,7 +56,7 @@ DryRun RunDry(Cell& real, const Scenario& scenario, RoundOptions options) {
     return attempts++ > 0 || (stop_requested && stop_requested());
   };
   const Part part = LoadPart(ScenarioPartName(scenario));
-  DryRunCell dry(real, 2.0 * part.radius_m);
+  DryRunCell dry(real, {2.0 * part.radius_m, part.mass_kg});
   out.round = RunCellRound(dry.cell(), scenario, options);
   out.report = dry.Report();
   out.story.end = out.round.record.summary.end_detail;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "models/arm/arm.h"
+
 namespace tubetwin {
 namespace {
 
@@ -98,20 +100,47 @@ class DryGripper : public Gripper {
   TimeNs began_{0};
 };
 
+/// What the real one reads, and the weight of what the rehearsed fingers hold between them.
+class DryWrist : public ForceTorqueSensor {
+ public:
+  DryWrist(const Cell& real, const DryArm& arm, const DryGripper& gripper, double held_kg)
+      : real_(real), arm_(arm), gripper_(gripper), held_kg_(held_kg) {}
+  WrenchSample Read() const override {
+    WrenchSample sample = real_.wrist.Read();
+    if (gripper_.State().object != GripperObject::kContactClosing) return sample;
+    const CellLayout& layout = real_.model.layout;
+    const Matrix3 R_BK =
+        FlangePose(real_.model.arm, arm_.State().q).linear() * layout.X_FK.linear();
+    const Vector3 weight_K = R_BK.transpose() * Vector3(0, 0, -held_kg_ * kGravity);
+    const Vector3 p_KE = (layout.X_FK.inverse() * layout.X_FE).translation();
+    sample.wrench_K.force_N += weight_K;
+    sample.wrench_K.torque_Nm += p_KE.cross(weight_K);
+    return sample;
+  }
+
+ private:
+  const Cell& real_;
+  const DryArm& arm_;
+  const DryGripper& gripper_;
+  double held_kg_;
+};
+
 }  // namespace
 
 struct DryRunCell::Impl {
-  Impl(Cell& real, double held_m)
-      : gripper(real.clock, real.gripper, held_m),
+  Impl(Cell& real, const RehearsedPart& held)
+      : gripper(real.clock, real.gripper, held.width_m),
         arm(real.clock, real.arm, gripper),
-        cell{real.clock,   arm,        gripper,  real.wrist,
-             real.scanner, real.model, real.bin, real.safety} {}
+        wrist(real, arm, gripper, held.mass_kg),
+        cell{real.clock, arm, gripper, wrist, real.scanner, real.model, real.bin, real.safety} {}
   DryGripper gripper;
   DryArm arm;
+  DryWrist wrist;
   Cell cell;
 };
 
-DryRunCell::DryRunCell(Cell& cell, double held_m) : impl_(std::make_unique<Impl>(cell, held_m)) {}
+DryRunCell::DryRunCell(Cell& cell, const RehearsedPart& held)
+    : impl_(std::make_unique<Impl>(cell, held)) {}
 DryRunCell::~DryRunCell() = default;
 Cell& DryRunCell::cell() { return impl_->cell; }
 DryRunReport DryRunCell::Report() const {

@@ -7,15 +7,20 @@
 
 namespace tubetwin {
 
+/// What rehearsed fingers close on, so that lifting and laying down are rehearsed too.
+struct RehearsedPart {
+  double width_m = 0.0;  ///< 0: they close on nothing.
+  double mass_kg = 0.0;
+};
+
 /// A cell for rehearsals in which nothing moves: a simulated arm and gripper that start where the
-/// real ones are and follow every command exactly, with the real wrist sensor and scanner. Scans
-/// show what the scanner sees from its real position. `cell` must outlive it, connected with
-/// CellPurpose::kLook so that its arm and gripper take no commands.
+/// real ones are and follow every command exactly, with the real scanner and the real wrist sensor,
+/// to which the weight of the rehearsed part is added while it is held. Scans show what the scanner
+/// sees from its real position. `cell` must outlive it, connected with CellPurpose::kLook so that
+/// its arm and gripper take no commands.
 class DryRunCell {
  public:
-  /// `held_m`: fingers that close stop at that width, as on a part, so that lifting is rehearsed
-  /// too; 0: they close on nothing. The wrist, which is the real one, weighs nothing either way.
-  explicit DryRunCell(Cell& cell, double held_m = 0.0);
+  explicit DryRunCell(Cell& cell, const RehearsedPart& held = {});
   ~DryRunCell();
   Cell& cell();
   /// What the motions so far show, none of which was sent.
