@@ -4,6 +4,7 @@
 
 #include "models/base/cloud/cloud.h"
 #include "models/base/cloud/cloud_file.h"
+#include "models/base/cloud/column_number.h"
 #include "models/base/cloud/lzf.h"
 #include "models/base/cloud/pcd_header.h"
 #include "models/base/error.h"
@@ -12,27 +13,9 @@
 namespace tubetwin {
 namespace {
 
-template <class T>
-double LoadAs(const char* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
-}
-
 double LoadNumber(const char* bytes, const PcdField& field) {
-  const bool sign = field.type == "I";
-  switch (field.size) {
-    case 1:
-      return sign ? LoadAs<std::int8_t>(bytes) : LoadAs<std::uint8_t>(bytes);
-    case 2:
-      return sign ? LoadAs<std::int16_t>(bytes) : LoadAs<std::uint16_t>(bytes);
-    case 4:
-      if (field.type == "F") return LoadAs<float>(bytes);
-      return sign ? LoadAs<std::int32_t>(bytes) : LoadAs<std::uint32_t>(bytes);
-    default:
-      if (field.type == "F") return LoadAs<double>(bytes);
-      return sign ? LoadAs<std::int64_t>(bytes) : LoadAs<std::uint64_t>(bytes);
-  }
+  const char kind = field.type == "F" ? 'F' : field.type == "I" ? 'I' : 'U';
+  return ColumnNumber(bytes, kind, field.size);
 }
 
 /// What is read of a record: x, y, z, and intensity and label where they are as WritePcd() writes

@@ -2,36 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "models/base/cloud/column_number.h"
 #include "models/base/text.h"
 
 namespace tubetwin {
 namespace {
-
-template <class T>
-double ValueOf(const char* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
-}
-
-/// A number of this machine's byte order.
-double ValueOf(const char* bytes, const PlyType& type) {
-  const bool sign = type.kind == 'I';
-  switch (type.size) {
-    case 1:
-      return sign ? ValueOf<std::int8_t>(bytes) : ValueOf<std::uint8_t>(bytes);
-    case 2:  // A half float is passed over by all who read; they ask for wider ones.
-      return sign ? ValueOf<std::int16_t>(bytes) : ValueOf<std::uint16_t>(bytes);
-    case 4:
-      if (type.kind == 'F') return ValueOf<float>(bytes);
-      return sign ? ValueOf<std::int32_t>(bytes) : ValueOf<std::uint32_t>(bytes);
-    default:
-      if (type.kind == 'F') return ValueOf<double>(bytes);
-      return sign ? ValueOf<std::int64_t>(bytes) : ValueOf<std::uint64_t>(bytes);
-  }
-}
 
 bool IsBlank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
@@ -106,7 +82,7 @@ double PlyRows::BinaryNumber(const PlyType& type) {
   char bytes[8];
   file_.ReadBytes(bytes, static_cast<std::size_t>(type.size));
   if (header_.format == PlyFormat::kBigEndian) std::reverse(bytes, bytes + type.size);
-  return ValueOf(bytes, type);
+  return ColumnNumber(bytes, type.kind, type.size);
 }
 
 void PlyRows::ReadBinary(const PlyElement& element, PlyRow& out) {
