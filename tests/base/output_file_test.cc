@@ -12,6 +12,7 @@
 #include "models/base/files.h"
 #include "tests/support/catch.h"
 #include "tests/support/full_disk.h"
+#include "tests/support/refused.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
@@ -19,16 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
-
-Error Refused(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& e) {
-    return e;
-  }
-  FAIL("nothing was refused");
-  throw std::logic_error("not reached");
-}
 
 }  // namespace
 

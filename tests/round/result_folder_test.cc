@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
 #include "tests/support/catch.h"
 #include "tests/support/full_disk.h"
+#include "tests/support/refused.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/round/folder/file_checks.h"
 #include "twin/round/round_recorder.h"
@@ -20,16 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
-
-Error Refused(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& e) {
-    return e;
-  }
-  FAIL("nothing was refused");
-  throw std::logic_error("not reached");
-}
 
 const ResultFolder::Claim kClaim{
     "run", {"rows.jsonl", "page.html", "given.toml", "failures"}, false};
