@@ -5,7 +5,7 @@
 namespace tubetwin {
 namespace {
 
-constexpr std::uint8_t kKey = 0x42, kWantsAnswer = 0x01;
+constexpr std::uint8_t kKey = 0x42, kWantsAnswer = 0x01, kLongIdsFlag = 0x10;
 
 DecodeError WrongSize(const char* what, std::size_t size, const char* allowed) {
   return DecodeError{std::string(what) + " of " + std::to_string(size) +
@@ -26,13 +26,13 @@ std::variant<GvcpRequest, DecodeError> DecodeGvcpRequest(std::string_view bytes)
                        " bytes follow; there are " + std::to_string(bytes.size() - kGvcpHeader)};
   }
   return GvcpRequest{U16At(bytes, 2), (U8At(bytes, 1) & kWantsAnswer) != 0, U16At(bytes, 6),
-                     std::string(bytes.substr(kGvcpHeader))};
+                     std::string(bytes.substr(kGvcpHeader)), (U8At(bytes, 1) & kLongIdsFlag) != 0};
 }
 
 std::string EncodeGvcpRequest(const GvcpRequest& request) {
   std::string out;
   PutU8(out, kKey);
-  PutU8(out, request.wants_answer ? kWantsAnswer : 0u);
+  PutU8(out, (request.wants_answer ? kWantsAnswer : 0u) | (request.long_ids ? kLongIdsFlag : 0u));
   PutU16(out, request.command);
   PutU16(out, static_cast<unsigned>(request.data.size()));
   PutU16(out, request.id);
@@ -74,10 +74,16 @@ std::variant<GvcpSpan, DecodeError> GvcpMemory(std::string_view data) {
   return GvcpSpan{U32At(data, 0), U16At(data, 6)};
 }
 
-std::variant<GvcpResend, DecodeError> GvcpResendOf(std::string_view data) {
-  if (data.size() < 12) return WrongSize("packets wanted again", data.size(), "12 or more");
-  constexpr std::uint32_t kPacket = 0xffffff;
-  return GvcpResend{U16At(data, 2), U32At(data, 4) & kPacket, U32At(data, 8) & kPacket};
+std::variant<GvcpResend, DecodeError> GvcpResendOf(const GvcpRequest& request) {
+  const std::string_view data = request.data;
+  if (!request.long_ids) {
+    if (data.size() < 12) return WrongSize("packets wanted again", data.size(), "12 or more");
+    constexpr std::uint32_t kPacket = 0xffffff;
+    return GvcpResend{U16At(data, 2), false, U32At(data, 4) & kPacket, U32At(data, 8) & kPacket};
+  }
+  if (data.size() < 20) return WrongSize("packets wanted again", data.size(), "20 or more");
+  const std::uint64_t id = static_cast<std::uint64_t>(U32At(data, 12)) << 32 | U32At(data, 16);
+  return GvcpResend{id, true, U32At(data, 4), U32At(data, 8)};
 }
 
 }  // namespace tubetwin

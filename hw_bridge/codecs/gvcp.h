@@ -42,6 +42,7 @@ struct GvcpRequest {
   bool wants_answer = false;
   std::uint16_t id = 0;
   std::string data;
+  bool long_ids = false;  ///< Of a kPacketResend: frames have ids of 64 bits.
 };
 
 /// Fails for what is no request: too short, too long, another first byte, another length than it
@@ -64,10 +65,11 @@ struct GvcpSpan {
 /// What a kReadMemory wants to read.
 std::variant<GvcpSpan, DecodeError> GvcpMemory(std::string_view data);
 struct GvcpResend {
-  std::uint16_t frame_id = 0;
+  std::uint64_t frame_id = 0;  ///< 16 bits of it without `long_ids`.
+  bool long_ids = false;
   std::uint32_t first = 0, last = 0;  ///< Packets.
 };
 /// What a kPacketResend wants again.
-std::variant<GvcpResend, DecodeError> GvcpResendOf(std::string_view data);
+std::variant<GvcpResend, DecodeError> GvcpResendOf(const GvcpRequest& request);
 
 }  // namespace tubetwin

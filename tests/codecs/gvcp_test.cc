@@ -45,10 +45,21 @@ TEST_CASE("What the other requests say is read", "[unit]") {
   CHECK(span.address == 0x10000);
   CHECK(span.size == 0x200);
   const auto again = std::get<GvcpResend>(
-      GvcpResendOf(Decoded("42 00 0040 000C 0001 00000007 00000003 00000005").data));
+      GvcpResendOf(Decoded("42 00 0040 000C 0001 00000007 00000003 00000005")));
   CHECK(again.frame_id == 7);
+  CHECK_FALSE(again.long_ids);
   CHECK(again.first == 3);
   CHECK(again.last == 5);
+  const GvcpRequest of_parts =
+      Decoded("42 10 0040 0014 0001 00000000 01000003 01000005 0102030405060708");
+  CHECK_FALSE(of_parts.wants_answer);
+  const auto parts = std::get<GvcpResend>(GvcpResendOf(of_parts));
+  CHECK(parts.frame_id == 0x0102030405060708);
+  CHECK(parts.long_ids);
+  CHECK(parts.first == 0x01000003);
+  CHECK(parts.last == 0x01000005);
+  CHECK(ToSpacedHex(EncodeGvcpRequest(of_parts)) ==
+        ToSpacedHex(FromHex("42 10 0040 0014 0001 00000000 01000003 01000005 0102030405060708")));
 }
 
 TEST_CASE("What is no request says why, and so do data of another length", "[unit]") {
@@ -61,7 +72,9 @@ TEST_CASE("What is no request says why, and so do data of another length", "[uni
   CHECK(std::holds_alternative<DecodeError>(GvcpAddresses("12345")));
   CHECK(std::holds_alternative<DecodeError>(GvcpWrites("1234")));
   CHECK(std::holds_alternative<DecodeError>(GvcpMemory("1234")));
-  CHECK(std::holds_alternative<DecodeError>(GvcpResendOf("12345678")));
+  CHECK(std::holds_alternative<DecodeError>(GvcpResendOf({0x40, false, 1, "12345678"})));
+  CHECK(std::holds_alternative<DecodeError>(
+      GvcpResendOf({0x40, false, 1, std::string(16, '\0'), true})));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "hw_bridge/emulators/photoneo/gige_registers.h"
 
+#include <bit>
+
 #include "hw_bridge/codecs/big_endian.h"
 #include "models/base/random.h"
 #include "tests/support/catch.h"
@@ -28,8 +30,20 @@ struct Bench {
   GvcpStatus Write(std::uint32_t address, std::uint32_t value, bool controller = true) {
     return Status(GvcpCommand::kWriteRegister, Words({address, value}), controller);
   }
-  GigeRegisters registers{160, 120, kHere, 16000};
+  /// Of a component.
+  GvcpStatus WriteBlock(ScanComponent component, std::uint32_t offset, std::uint32_t value) {
+    return Write(gige::ComponentBlock(component) + offset, value);
+  }
+  GvcpStatus Enable(ScanComponent component, bool yes = true) {
+    return WriteBlock(component, gige::kEnabled, yes ? 1 : 0);
+  }
+  std::string Read(std::uint32_t address, std::uint32_t size) {
+    return Ask(GvcpCommand::kReadMemory, Words({address, size})).second.substr(4);
+  }
+  GigeRegisters registers{GigeDevice{160, 120, 1000.0, kHere, 1500, 9000}};
 };
+
+std::uint32_t Bits(float value) { return std::bit_cast<std::uint32_t>(value); }
 
 TEST_CASE("The description is where the first URL says, whole", "[unit]") {
   Bench bench;
@@ -74,12 +88,16 @@ TEST_CASE("No address and no value reaches beyond the registers", "[unit]") {
   CHECK(bench.Write(gige::kPacketSize, 100) == GvcpStatus::kInvalidParameter);
   CHECK(bench.Write(gige::kHeartbeat, 0) == GvcpStatus::kInvalidParameter);
   CHECK(bench.Write(gige::kUserSet, 3) == GvcpStatus::kInvalidParameter);
-  CHECK(bench.Write(gige::kPixelFormat, 0x01080001) == GvcpStatus::kInvalidParameter);
+  CHECK(bench.WriteBlock(ScanComponent::kRange, gige::kComponentId, 5) ==
+        GvcpStatus::kWriteProtect);
+  CHECK(bench.Write(gige::kSettingsEnd, 1) == GvcpStatus::kWriteProtect);
   CHECK(bench.Ask(static_cast<GvcpCommand>(0x1234), "").first == GvcpStatus::kNotImplemented);
 }
 
 TEST_CASE("Only who has control writes", "[unit]") {
   Bench bench;
+  CHECK(bench.Write(gige::kTriggerMode, 1) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kTriggerSource, 1) == GvcpStatus::kSuccess);
   CHECK(bench.Write(gige::kTrigger, 1, false) == GvcpStatus::kAccessDenied);
   CHECK(bench.registers.Get(gige::kTrigger) == 0);
   CHECK(bench.Write(gige::kTrigger, 1) == GvcpStatus::kSuccess);
@@ -95,17 +113,131 @@ TEST_CASE("User sets keep what was set, and the one as shipped stays so", "[unit
   const std::uint32_t shipped = bench.registers.Get(gige::kExposure);
   CHECK(bench.Write(gige::kUserSetSave, 1) == GvcpStatus::kWriteProtect);
   CHECK(bench.Write(gige::kUserSet, 1) == GvcpStatus::kSuccess);
-  CHECK(bench.Write(gige::kExposure, 7) == GvcpStatus::kSuccess);
+  const std::uint32_t longer = Bits(30.72f);
+  CHECK(bench.Write(gige::kExposure, longer) == GvcpStatus::kSuccess);
+  CHECK(bench.Enable(ScanComponent::kNormal) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kOutputMode, 1) == GvcpStatus::kSuccess);
   CHECK(bench.Write(gige::kUserSetSave, 1) == GvcpStatus::kSuccess);
   CHECK(bench.Write(gige::kUserSet, 0) == GvcpStatus::kSuccess);
   CHECK(bench.Write(gige::kUserSetLoad, 1) == GvcpStatus::kSuccess);
   CHECK(bench.registers.Get(gige::kExposure) == shipped);
+  CHECK(bench.registers.FrameSettings().components.size() == 1);
+  CHECK(bench.registers.Get(gige::kPayloadSize) == 160 * 120 * 12);
   CHECK(bench.Write(gige::kUserSet, 1) == GvcpStatus::kSuccess);
   CHECK(bench.Write(gige::kUserSetLoad, 1) == GvcpStatus::kSuccess);
-  CHECK(bench.registers.Get(gige::kExposure) == 7);
+  CHECK(bench.registers.Get(gige::kExposure) == longer);
+  CHECK(bench.registers.FrameSettings().components.size() == 2);
+  CHECK(bench.registers.Get(gige::kPayloadSize) == 160 * 120 * (4 + 12) + 16);
   CHECK(bench.Write(gige::kUserSetReset, 1) == GvcpStatus::kSuccess);
   CHECK(bench.Write(gige::kUserSetLoad, 1) == GvcpStatus::kSuccess);
   CHECK(bench.registers.Get(gige::kExposure) == shipped);
+}
+
+TEST_CASE("What frames hold is what was enabled, in the order of ids", "[unit]") {
+  Bench bench;
+  REQUIRE(bench.registers.FrameSettings().components.size() == 1);  // As shipped: the range.
+  CHECK(bench.registers.Get(gige::kPayloadSize) == 160 * 120 * 12);
+  CHECK(bench.Enable(ScanComponent::kNormal) == GvcpStatus::kSuccess);
+  CHECK(bench.Enable(ScanComponent::kConfidence) == GvcpStatus::kSuccess);
+  CHECK(bench.Enable(ScanComponent::kIntensity) == GvcpStatus::kSuccess);
+  CHECK(bench.WriteBlock(ScanComponent::kNormal, gige::kEnabled, 2) ==
+        GvcpStatus::kInvalidParameter);
+  const GigeFrameSettings settings = bench.registers.FrameSettings();
+  REQUIRE(settings.components.size() == 4);
+  CHECK_FALSE(settings.multipart);
+  std::uint16_t last = 0;
+  for (const auto& each : settings.components) {
+    CHECK(InfoOf(each.component).id > last);
+    last = InfoOf(each.component).id;
+    CHECK(bench.registers.Get(gige::ComponentBlock(each.component) + gige::kComponentId) == last);
+  }
+  CHECK(last == 0xff00);
+  // Chunks have 8 bytes more each, parts have not.
+  CHECK(bench.registers.Get(gige::kPayloadSize) == 160 * 120 * (2 + 12 + 1 + 12) + 4 * 8);
+  CHECK(bench.Write(gige::kStreamConfiguration, gige::kMultipart) == GvcpStatus::kSuccess);
+  CHECK(bench.registers.FrameSettings().multipart);
+  CHECK(bench.registers.Get(gige::kPayloadSize) == 160 * 120 * (2 + 12 + 1 + 12));
+  CHECK(bench.Enable(ScanComponent::kRange, false) == GvcpStatus::kSuccess);
+  CHECK(bench.registers.FrameSettings().components.size() == 3);
+  CHECK(bench.Write(gige::kStreamConfiguration, 0x80000000) == GvcpStatus::kInvalidParameter);
+}
+
+TEST_CASE("Each component has its own pixel formats", "[unit]") {
+  Bench bench;
+  const auto format = [&bench](ScanComponent component, std::uint32_t value) {
+    return bench.WriteBlock(component, gige::kPixelFormat, value) == GvcpStatus::kSuccess;
+  };
+  CHECK(format(ScanComponent::kNormal, kPixelCoord3dAc8));
+  CHECK(format(ScanComponent::kNormal, kPixelCoord3dAbc32f));
+  CHECK_FALSE(format(ScanComponent::kNormal, kPixelMono10));
+  CHECK(format(ScanComponent::kIntensity, kPixelMono10));
+  CHECK_FALSE(format(ScanComponent::kIntensity, 0x02180014));  // There is no colour.
+  CHECK(format(ScanComponent::kConfidence, kPixelConfidence8));
+  // The range's follows from the output mode.
+  CHECK_FALSE(format(ScanComponent::kRange, kPixelCoord3dC32f));
+  CHECK(bench.Write(gige::kOutputMode, 1) == GvcpStatus::kSuccess);
+  CHECK(format(ScanComponent::kRange, kPixelCoord3dC32f));
+  CHECK_FALSE(format(ScanComponent::kRange, kPixelCoord3dAbc32f));
+  CHECK(bench.registers.Get(gige::kPayloadSize) == 160 * 120 * 4);
+}
+
+TEST_CASE("Packets are as large as the interface takes them", "[unit]") {
+  Bench bench;
+  CHECK(bench.registers.Get(gige::kPacketSize) == 1500);
+  CHECK(bench.Write(gige::kPacketSize, 1504) == GvcpStatus::kInvalidParameter);
+  CHECK(bench.Write(gige::kPacketSize, 572) == GvcpStatus::kInvalidParameter);
+  CHECK(bench.Write(gige::kPacketSize, 576) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kPacketSize, gige::kDoNotFragment | 1400) == GvcpStatus::kSuccess);
+  // Pixels are little-endian, always.
+  CHECK(bench.Write(gige::kPacketSize, 0x20000000 | 1400) == GvcpStatus::kInvalidParameter);
+  CHECK(bench.Write(gige::kJumboFrames, 1) == GvcpStatus::kSuccess);
+  CHECK(bench.registers.Get(gige::kLargestPacket) == 9000);
+  CHECK(bench.Write(gige::kPacketSize, 9000) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kJumboFrames, 0) == GvcpStatus::kSuccess);
+  CHECK(bench.registers.Get(gige::kPacketSize) == 1500);
+}
+
+TEST_CASE("Only a scanner that waits for software triggers takes one", "[unit]") {
+  Bench bench;
+  CHECK(bench.registers.free_runs());
+  CHECK(bench.Write(gige::kTrigger, 1) == GvcpStatus::kAccessDenied);
+  CHECK(bench.Write(gige::kTriggerMode, 1) == GvcpStatus::kSuccess);
+  CHECK_FALSE(bench.registers.free_runs());
+  CHECK(bench.Write(gige::kTrigger, 1) == GvcpStatus::kAccessDenied);  // The line triggers.
+  CHECK(bench.Write(gige::kTriggerSource, 1) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kTrigger, 1) == GvcpStatus::kSuccess);
+  bench.registers.EndControl();
+  CHECK(bench.registers.Get(gige::kTrigger) == 0);
+}
+
+TEST_CASE("A reset starts it anew, with the user set that was chosen for that", "[unit]") {
+  Bench bench;
+  CHECK(bench.Write(gige::kUserSetDefault, 3) == GvcpStatus::kInvalidParameter);
+  CHECK(bench.Write(gige::kUserSet, 2) == GvcpStatus::kSuccess);
+  CHECK(bench.Enable(ScanComponent::kIntensity) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kUserSetSave, 1) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kUserSetDefault, 2) == GvcpStatus::kSuccess);
+  CHECK(bench.Enable(ScanComponent::kIntensity, false) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kControl, 2) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kAcquisition, 1) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kPacketSize, 600) == GvcpStatus::kSuccess);
+  CHECK(bench.Write(gige::kDeviceReset, 1) == GvcpStatus::kSuccess);
+  CHECK(bench.registers.Get(gige::kControl) == 0);
+  CHECK(bench.registers.Get(gige::kAcquisition) == 0);
+  CHECK(bench.registers.Get(gige::kPacketSize) == 1500);
+  CHECK(bench.registers.FrameSettings().components.size() == 2);
+}
+
+TEST_CASE("It has the names of a PhoXi, and says that it is none", "[unit]") {
+  Bench bench;
+  CHECK_THAT(bench.Read(gige::kVendor, 32), StartsWith(std::string("Photoneo\0", 9)));
+  CHECK_THAT(bench.Read(gige::kModel, 32), StartsWith(std::string("PhoXi3DScan\0", 12)));
+  CHECK_THAT(bench.Read(gige::kManufacturerInfo, 48), StartsWith("emulated by tubetwin"));
+  CHECK(bench.Status(GvcpCommand::kWriteMemory,
+                     Bench::Words({gige::kUserName}) + std::string("left cell\0\0\0", 12)) ==
+        GvcpStatus::kSuccess);
+  const auto found = bench.Ask(GvcpCommand::kDiscovery, "").second;
+  CHECK_THAT(found.substr(gige::kUserName), StartsWith("left cell"));
 }
 
 TEST_CASE("Random requests are answered or refused, and the scanner stays what it is", "[unit]") {

@@ -27,14 +27,14 @@ void TryBytes(std::string_view bytes) {
   const GvcpRequest& request = std::get<GvcpRequest>(decoded);
   const std::string again = EncodeGvcpRequest(request);
   Require(again.size() == bytes.size() && again.substr(2) == bytes.substr(2), "another request");
-  GigeRegisters registers(160, 120, 0x7f000001, 16000);
+  GigeRegisters registers({160, 120, 1000.0, 0x7f000001});
   for (const bool controller : {false, true}) {
     const auto [status, data] = registers.Do(request, controller);
     Require(data.size() <= kMaxGvcpData, "an answer that is too long");
     Require(EncodeGvcpAnswer(request, status, data).size() == kGvcpHeader + data.size(), "answer");
   }
   Require(registers.Get(gige::kWidth) == 160, "a register that nobody may write");
-  (void)GvcpResendOf(request.data);
+  (void)GvcpResendOf(request);
 }
 
 std::vector<std::string> ByteCorpus() {

@@ -70,8 +70,11 @@ std::unique_ptr<ScannerEmulator> ScannerAt(Scanner& scanner, const Scenario& sce
     return std::make_unique<ScannerFolderEmulator>(scanner, config);
   }
   const ScanSettings scan = ScenarioScan(scenario, ScenarioModel(scenario), RoundPhysics());
-  return std::make_unique<ScannerGigeEmulator>(
-      scanner, ScannerGigeConfig{places.listen, scan.width, scan.height});
+  ScannerGigeConfig config{places.listen, scan.width, scan.height, {}};
+  config.optics.focal_px = scan.spec.focal_px * scan.width / scan.spec.full_width;
+  config.optics.sweet_spot_m = scan.spec.sweet_spot_m;
+  config.optics.sigma_m = scan.spec.sigma_m;
+  return std::make_unique<ScannerGigeEmulator>(scanner, config);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ using SteadyClock = std::chrono::steady_clock;
 constexpr std::uint16_t kControlPort = 3956;
 // A loopback interface takes packets of 64 KiB. This size fills the kernel's buffers best: few
 // packets, each with little waste.
-constexpr std::uint32_t kLoopbackPacket = 16000, kEthernetPacket = 1500;
+constexpr std::uint32_t kLoopbackPacket = 16000;
 constexpr int kLookMs = 20;  ///< The thread looks whether it is to end.
 constexpr int kMaxRequests = 256;
 /// A client that asks for more at once has lost its frame.
@@ -36,7 +36,7 @@ constexpr std::uint32_t kMaxResent = 1000;
 }  // namespace
 
 struct GigeControl::Impl {
-  Impl(const std::string& listen, int width, int height, GvspSender& frames)
+  Impl(const std::string& listen, int width, int height, double focal_px, GvspSender& frames)
       : sender(frames), main(io) {
     asio::error_code error;
     const auto address = asio::ip::make_address_v4(listen, error);
@@ -49,8 +49,13 @@ struct GigeControl::Impl {
     if (error) CannotListen(listen, error.message());
     main.non_blocking(true);
     ListenForDiscovery(address);
-    registers.emplace(width, height, address.to_uint(),
-                      address.is_loopback() ? kLoopbackPacket : kEthernetPacket);
+    GigeDevice device;
+    device.width = width;
+    device.height = height;
+    device.focal_px = focal_px;
+    device.address = address.to_uint();
+    if (address.is_loopback()) device.packet_size = device.jumbo_packet_size = kLoopbackPacket;
+    registers.emplace(device);
     thread = std::jthread([this](const std::stop_token& stop) { Serve(stop); });
   }
 
@@ -111,7 +116,7 @@ struct GigeControl::Impl {
       owner = from;
       heard = SteadyClock::now();
     }
-    if (controlled && registers->Get(gige::kControl) == 0) EndControl();
+    if (controlled && registers->Get(gige::kControl) == 0) registers->EndControl();
     FireTestPacket();
     if (!request.wants_answer) return;
     asio::error_code lost;
@@ -120,17 +125,19 @@ struct GigeControl::Impl {
 
   void EndSilentControl() {
     const auto limit = std::chrono::milliseconds(registers->Get(gige::kHeartbeat));
-    if (registers->Get(gige::kControl) != 0 && SteadyClock::now() - heard > limit) EndControl();
-  }
-
-  void EndControl() {
-    registers->Set(gige::kControl, 0);
-    registers->Set(gige::kAcquisition, 0);
-    registers->Set(gige::kStreamPort, 0);
+    if (registers->Get(gige::kControl) == 0 || SteadyClock::now() - heard <= limit) return;
+    registers->EndControl();
   }
 
   GvspClient Stream() const {
     return {registers->Get(gige::kStreamAddress), registers->Get(gige::kStreamPort) & 0xffff};
+  }
+  /// Whom frames can be sent to.
+  std::optional<GvspClient> Client() const {
+    const bool sends =
+        registers->Get(gige::kControl) != 0 && registers->Get(gige::kAcquisition) != 0;
+    if (!sends) return std::nullopt;
+    return Stream();
   }
   std::uint32_t PacketSize() const { return registers->Get(gige::kPacketSize) & 0xffff; }
 
@@ -143,11 +150,11 @@ struct GigeControl::Impl {
   }
 
   void SendAgain(const GvcpRequest& request) {
-    const auto wanted = GvcpResendOf(request.data);
+    const auto wanted = GvcpResendOf(request);
     const auto* packets = std::get_if<GvcpResend>(&wanted);
     if (packets == nullptr || packets->last < packets->first) return;
     if (packets->last - packets->first >= kMaxResent) return;
-    sender.SendAgain(packets->frame_id, packets->first, packets->last, Stream());
+    sender.SendAgain(*packets, Stream());
   }
 
   GvspSender& sender;
@@ -161,8 +168,9 @@ struct GigeControl::Impl {
   std::jthread thread;  ///< Last: ends before what it uses.
 };
 
-GigeControl::GigeControl(const std::string& listen, int width, int height, GvspSender& sender)
-    : impl_(std::make_unique<Impl>(listen, width, height, sender)) {}
+GigeControl::GigeControl(const std::string& listen, int width, int height, double focal_px,
+                         GvspSender& sender)
+    : impl_(std::make_unique<Impl>(listen, width, height, focal_px, sender)) {}
 GigeControl::~GigeControl() = default;
 
 bool GigeControl::triggered() const {
@@ -171,21 +179,22 @@ bool GigeControl::triggered() const {
 }
 
 std::optional<GvspClient> GigeControl::TakeTrigger() {
-  if (!triggered()) return std::nullopt;
-  const std::optional<GvspClient> asks = client();
-  // A trigger that comes just now is answered by the scan that starts after this.
   const std::lock_guard lock(impl_->mutex);
+  const bool wanted = impl_->registers->Get(gige::kTrigger) != 0 || impl_->registers->free_runs();
+  if (!wanted) return std::nullopt;
+  // A trigger that comes after this is answered by a scan of its own.
   impl_->registers->Set(gige::kTrigger, 0);
-  return asks;
+  return impl_->Client();
 }
 
 std::optional<GvspClient> GigeControl::client() const {
   const std::lock_guard lock(impl_->mutex);
-  const GigeRegisters& registers = *impl_->registers;
-  if (registers.Get(gige::kControl) == 0 || registers.Get(gige::kAcquisition) == 0) {
-    return std::nullopt;
-  }
-  return impl_->Stream();
+  return impl_->Client();
+}
+
+GigeFrameSettings GigeControl::frame_settings() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->registers->FrameSettings();
 }
 
 std::uint32_t GigeControl::packet_size() const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "hw_bridge/emulators/photoneo/gige_registers.h"
 #include "hw_bridge/emulators/photoneo/gvsp_sender.h"
 
 namespace tubetwin {
@@ -22,17 +23,20 @@ class GigeControl {
  public:
   /// Listens at once. Throws Error(kDevice) when `listen` is no IPv4 address of this machine or its
   /// port 3956 is taken. `sender` must outlive it.
-  GigeControl(const std::string& listen, int width, int height, GvspSender& sender);
+  GigeControl(const std::string& listen, int width, int height, double focal_px,
+              GvspSender& sender);
   ~GigeControl();
 
-  /// Whether a scan is wanted that TakeTrigger() has not returned.
+  /// Whether a scan is triggered that TakeTrigger() has not returned.
   bool triggered() const;
-  /// The client that wants a scan, once per trigger.
+  /// The client that wants a scan: once per trigger; always while it takes frames without trigger.
   std::optional<GvspClient> TakeTrigger();
   /// The client that frames can be sent to now; nothing while acquisition is stopped.
   std::optional<GvspClient> client() const;
   /// That this client has agreed to, with all headers.
   std::uint32_t packet_size() const;
+  /// What the next frame is to hold.
+  GigeFrameSettings frame_settings() const;
 
  private:
   struct Impl;

@@ -1,273 +1,280 @@
 #include "hw_bridge/emulators/photoneo/gige_genicam.h"
 
+#include <cstdint>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "hw_bridge/emulators/photoneo/gige_registers.h"
+
 namespace tubetwin {
+namespace {
 
-const char* const kScannerGenicam = R"xml(<?xml version="1.0" encoding="utf-8"?>
-<RegisterDescription ModelName="EmulatedScanner" VendorName="tubetwin"
+std::string Hex(std::uint32_t value) {
+  char text[16];
+  std::snprintf(text, sizeof text, "0x%x", value);
+  return text;
+}
+
+std::string Tag(const std::string& name, const std::string& content) {
+  return "<" + name + ">" + content + "</" + name + ">";
+}
+std::string Number(const std::string& tag, std::int64_t value) {
+  return Tag(tag, std::to_string(value));
+}
+std::string Node(const std::string& kind, const std::string& name, const std::string& content) {
+  return "<" + kind + " Name=\"" + name + "\">" + content + "</" + kind + ">\n";
+}
+
+enum class Access { kRead, kWrite };
+/// What every register says. Nothing is kept by clients: what one register is may follow from
+/// others.
+std::string At(std::uint32_t address, int bytes, Access access) {
+  return Tag("Address", Hex(address)) + Number("Length", bytes) +
+         Tag("AccessMode", access == Access::kRead ? "RO" : "RW") + Tag("pPort", "Device") +
+         Tag("Cachable", "NoCache");
+}
+constexpr char kBigEndian[] = "<Endianess>BigEndian</Endianess>";
+constexpr char kUnsigned[] = "<Sign>Unsigned</Sign>";
+
+std::string Word(const std::string& name, std::uint32_t address, Access access,
+                 const std::string& more = "") {
+  return Node("IntReg", name, At(address, 4, access) + more + kUnsigned + kBigEndian);
+}
+/// Of each component: the selected one's.
+std::string BlockWord(const std::string& name, std::uint32_t offset, Access access) {
+  return Word(name, gige::kComponents + offset, access, Tag("pAddress", "ComponentBlock"));
+}
+std::string Text(const std::string& name, std::uint32_t address, std::uint32_t end, Access access) {
+  return Node("StringReg", name, At(address, static_cast<int>(end - address), access));
+}
+std::string FloatWord(const std::string& name, std::uint32_t address, Access access) {
+  return Node("FloatReg", name, At(address, 4, access) + kBigEndian);
+}
+
+std::string Constant(const std::string& name, std::int64_t value) {
+  return Node("Integer", name, Number("Value", value));
+}
+std::string Told(const std::string& name, std::uint32_t address) {
+  return Node("Integer", name, Tag("pValue", name + "Reg")) +
+         Word(name + "Reg", address, Access::kRead);
+}
+std::string Command(const std::string& name, std::uint32_t address) {
+  return Node("Command", name, Tag("pValue", name + "Reg") + Number("CommandValue", 1)) +
+         Word(name + "Reg", address, Access::kWrite);
+}
+std::string Switch(const std::string& name, const std::string& place) {
+  return Node("Boolean", name, place + Number("OnValue", 1) + Number("OffValue", 0));
+}
+
+struct Entry {
+  std::string name;
+  std::uint32_t value = 0;
+  std::string available = {};  ///< Node that says whether it can be chosen; empty: always.
+};
+std::string Entries(const std::vector<Entry>& entries) {
+  std::string out;
+  for (const Entry& each : entries) {
+    const std::string when = each.available.empty() ? "" : Tag("pIsAvailable", each.available);
+    out += Node("EnumEntry", each.name, when + Tag("Value", Hex(each.value)));
+  }
+  return out;
+}
+std::string Choice(const std::string& name, std::uint32_t address,
+                   const std::vector<Entry>& entries, const std::string& more = "") {
+  return Node("Enumeration", name, Entries(entries) + Tag("pValue", name + "Reg") + more) +
+         Word(name + "Reg", address, Access::kWrite);
+}
+
+std::string Category(const std::string& name, const std::vector<std::string>& features) {
+  std::string out;
+  for (const std::string& feature : features) out += Tag("pFeature", feature);
+  return Node("Category", name, out);
+}
+
+std::string DeviceControl() {
+  return Category("DeviceControl",
+                  {"DeviceVendorName", "DeviceModelName", "DeviceVersion", "DeviceFirmwareVersion",
+                   "DeviceManufacturerInfo", "DeviceSerialNumber", "DeviceUserID", "DeviceReset"}) +
+         Text("DeviceVendorName", gige::kVendor, gige::kModel, Access::kRead) +
+         Text("DeviceModelName", gige::kModel, gige::kDeviceVersion, Access::kRead) +
+         Text("DeviceVersion", gige::kDeviceVersion, gige::kManufacturerInfo, Access::kRead) +
+         Text("DeviceFirmwareVersion", gige::kDeviceVersion, gige::kManufacturerInfo,
+              Access::kRead) +
+         Text("DeviceManufacturerInfo", gige::kManufacturerInfo, gige::kSerial, Access::kRead) +
+         Text("DeviceSerialNumber", gige::kSerial, gige::kUserName, Access::kRead) +
+         Text("DeviceUserID", gige::kUserName, gige::kUserNameEnd, Access::kWrite) +
+         Command("DeviceReset", gige::kDeviceReset);
+}
+
+std::string AcquisitionControl() {
+  const std::string acquisition = Tag("pValue", "AcquisitionReg");
+  return Category("AcquisitionControl",
+                  {"AcquisitionMode", "AcquisitionStart", "AcquisitionStop", "TriggerSelector",
+                   "TriggerMode", "TriggerSource", "TriggerActivation", "TriggerSoftware"}) +
+         Choice("AcquisitionMode", gige::kAcquisitionMode, {{"Continuous", 1}}) +
+         Node("Command", "AcquisitionStart", acquisition + Number("CommandValue", 1)) +
+         Node("Command", "AcquisitionStop", acquisition + Number("CommandValue", 0)) +
+         Word("AcquisitionReg", gige::kAcquisition, Access::kWrite) +
+         Choice("TriggerSelector", gige::kTriggerSelector, {{"FrameStart", 0}}) +
+         Choice("TriggerMode", gige::kTriggerMode, {{"Off", 0}, {"On", 1}}) +
+         Choice("TriggerSource", gige::kTriggerSource, {{"Line1", 0}, {"Software", 1}}) +
+         Choice("TriggerActivation", gige::kTriggerActivation,
+                {{"RisingEdge", 0}, {"FallingEdge", 1}}) +
+         Command("TriggerSoftware", gige::kTrigger);
+}
+
+/// A node that is 1 when the formula of C, the selected component, and M, the output mode, holds.
+std::string Holds(const std::string& name, const std::string& formula) {
+  return Node("IntSwissKnife", name,
+              "<pVariable Name=\"C\">ComponentSelectorReg</pVariable>"
+              "<pVariable Name=\"M\">Scan3dOutputModeReg</pVariable>" +
+                  Tag("Formula", formula));
+}
+
+std::string PixelFormats() {
+  return Node("Enumeration", "PixelFormat",
+              Entries({{"Mono10", kPixelMono10, "IsIntensity"},
+                       {"Coord3D_ABC32f", kPixelCoord3dAbc32f, "IsPointOrNormal"},
+                       {"Coord3D_C32f", kPixelCoord3dC32f, "IsDepth"},
+                       {"Confidence8", kPixelConfidence8, "IsConfidence"},
+                       {"Coord3D_A32f", kPixelCoord3dA32f, "IsMapA"},
+                       {"Coord3D_B32f", kPixelCoord3dB32f, "IsMapB"},
+                       {"Coord3D_AC8", kPixelCoord3dAc8, "IsNormal"}}) +
+                  Tag("pValue", "PixelFormatReg")) +
+         BlockWord("PixelFormatReg", gige::kPixelFormat, Access::kWrite) +
+         Holds("IsIntensity", "C = 0") +
+         Holds("IsPointOrNormal", "(C = 5) || ((C = 1) &amp;&amp; (M = 0))") +
+         Holds("IsDepth", "(C = 1) &amp;&amp; (M = 1)") + Holds("IsConfidence", "C = 2") +
+         Holds("IsMapA", "C = 3") + Holds("IsMapB", "C = 4") + Holds("IsNormal", "C = 5");
+}
+
+std::string ImageFormatControl() {
+  std::vector<Entry> components;
+  for (std::uint32_t i = 0; i < kScanComponents; ++i) {
+    components.push_back({InfoOf(static_cast<ScanComponent>(i)).name, i});
+  }
+  const std::string selected = Tag("pSelected", "ComponentEnable") +
+                               Tag("pSelected", "ComponentIDValue") +
+                               Tag("pSelected", "PixelFormat");
+  const auto same = [](const char* name, const char* of) {
+    return Node("Integer", name, Tag("pValue", of));
+  };
+  return Category("ImageFormatControl",
+                  {"Width", "Height", "SensorWidth", "SensorHeight", "WidthMax", "HeightMax",
+                   "OffsetX", "OffsetY", "ComponentSelector", "ComponentEnable", "ComponentIDValue",
+                   "PixelFormat"}) +
+         Told("Width", gige::kWidth) + Told("Height", gige::kHeight) +
+         same("SensorWidth", "WidthReg") + same("SensorHeight", "HeightReg") +
+         same("WidthMax", "WidthReg") + same("HeightMax", "HeightReg") + Constant("OffsetX", 0) +
+         Constant("OffsetY", 0) +
+         Choice("ComponentSelector", gige::kComponent, components, selected) +
+         Node("IntSwissKnife", "ComponentBlock",
+              "<pVariable Name=\"C\">ComponentSelectorReg</pVariable>" +
+                  Tag("Formula", "C * " + std::to_string(gige::kComponentBlock))) +
+         Switch("ComponentEnable", Tag("pValue", "ComponentEnableReg")) +
+         BlockWord("ComponentEnableReg", gige::kEnabled, Access::kWrite) +
+         same("ComponentIDValue", "ComponentIDValueReg") +
+         BlockWord("ComponentIDValueReg", gige::kComponentId, Access::kRead) + PixelFormats();
+}
+
+std::string Scan3dControl() {
+  return Category("Scan3dControl",
+                  {"Scan3dOutputMode", "Scan3dDistanceUnit", "Scan3dFocalLength",
+                   "Scan3dAspectRatio", "Scan3dPrincipalPointU", "Scan3dPrincipalPointV"}) +
+         Choice("Scan3dOutputMode", gige::kOutputMode,
+                {{"CalibratedABC_Grid", 0}, {"ProjectedC", 1}}) +
+         Node("Enumeration", "Scan3dDistanceUnit",
+              Entries({{"Millimeter", 0}}) + Number("Value", 0)) +
+         FloatWord("Scan3dFocalLength", gige::kFocal, Access::kRead) +
+         Node("Float", "Scan3dAspectRatio", Number("Value", 1)) +
+         FloatWord("Scan3dPrincipalPointU", gige::kCentreU, Access::kRead) +
+         FloatWord("Scan3dPrincipalPointV", gige::kCentreV, Access::kRead);
+}
+
+std::string TransportLayerControl() {
+  const std::string locked = Tag("pIsLocked", "TLParamsLocked");
+  const auto bits = [](const char* name, const std::string& which) {
+    return Node("MaskedIntReg", name,
+                At(gige::kPacketSize, 4, Access::kWrite) + which + kUnsigned + kBigEndian);
+  };
+  return Category("TransportLayerControl",
+                  {"PayloadSize", "GevSCPSPacketSize", "GevSCPSFireTestPacket",
+                   "GevSCPSDoNotFragment", "TLParamsLocked"}) +
+         Told("PayloadSize", gige::kPayloadSize) +
+         Node("Integer", "GevSCPSPacketSize",
+              locked + Tag("pValue", "PacketSizeReg") + Number("Min", gige::kSmallestPacket) +
+                  Tag("pMax", "LargestPacketReg") + Number("Inc", 4)) +
+         bits("PacketSizeReg", Number("LSB", 31) + Number("MSB", 16)) +
+         Word("LargestPacketReg", gige::kLargestPacket, Access::kRead) +
+         Node("Command", "GevSCPSFireTestPacket",
+              locked + Tag("pValue", "FireTestPacketReg") + Number("CommandValue", 1)) +
+         bits("FireTestPacketReg", Number("Bit", 0)) +
+         Switch("GevSCPSDoNotFragment", locked + Tag("pValue", "DoNotFragmentReg")) +
+         bits("DoNotFragmentReg", Number("Bit", 1)) +
+         Node("Integer", "TLParamsLocked",
+              Tag("pValue", "TLParamsLockedReg") + Number("Min", 0) + Number("Max", 1)) +
+         Word("TLParamsLockedReg", gige::kLocked, Access::kWrite);
+}
+
+std::string UserSetControl() {
+  std::vector<Entry> features;
+  for (const char* feature :
+       {"ComponentEnable", "PixelFormat", "Scan3dOutputMode", "AcquisitionMode", "TriggerSelector",
+        "TriggerMode", "TriggerSource", "TriggerActivation", "OperationMode", "CameraExposure",
+        "CameraTextureSource", "NormalsEstimationRadius", "EnableJumboFrames",
+        "UserSetDescription"}) {
+    features.push_back({feature, static_cast<std::uint32_t>(features.size())});
+  }
+  const std::vector<Entry> sets = {{"Default", 0}, {"UserSet0", 1}, {"UserSet1", 2}};
+  return Category("UserSetControl",
+                  {"UserSetSelector", "UserSetLoad", "UserSetSave", "UserSetReset",
+                   "UserSetDefault", "UserSetDescription", "UserSetFeatureSelector"}) +
+         Choice("UserSetSelector", gige::kUserSet, sets) +
+         Command("UserSetLoad", gige::kUserSetLoad) + Command("UserSetSave", gige::kUserSetSave) +
+         Command("UserSetReset", gige::kUserSetReset) +
+         Choice("UserSetDefault", gige::kUserSetDefault, sets) +
+         Text("UserSetDescription", gige::kDescription, gige::kDescriptionEnd, Access::kWrite) +
+         Node("Enumeration", "UserSetFeatureSelector", Entries(features) + Number("Value", 0));
+}
+
+std::string PhotoneoControl() {
+  return Category(
+             "PhotoneoControl",
+             {"OperationMode", "CameraExposure", "CameraTextureSource", "NormalsEstimationRadius",
+              "EnableJumboFrames", "IsPhoXi3DScanner_Val", "IsMotionCam3D_Val",
+              "IsMotionCam3DColor_Val", "IsAlphaScanner_Val", "IsNotAlphaScanner_Val"}) +
+         Choice("OperationMode", gige::kOperationMode, {{"Scanner", 0}, {"Camera", 1}}) +
+         Node("Float", "CameraExposure",
+              Tag("pValue", "CameraExposureReg") + Tag("Min", "10.24") + Tag("Max", "100.352") +
+                  Tag("Unit", "ms")) +
+         FloatWord("CameraExposureReg", gige::kExposure, Access::kWrite) +
+         Choice("CameraTextureSource", gige::kTextureSource, {{"Laser", 0}, {"LED", 1}}) +
+         Node("Integer", "NormalsEstimationRadius",
+              Tag("pValue", "NormalsRadiusReg") + Number("Min", 0) + Number("Max", 4)) +
+         Word("NormalsRadiusReg", gige::kNormalsRadius, Access::kWrite) +
+         Switch("EnableJumboFrames", Tag("pValue", "JumboFramesReg")) +
+         Word("JumboFramesReg", gige::kJumboFrames, Access::kWrite) +
+         Constant("IsPhoXi3DScanner_Val", 1) + Constant("IsMotionCam3D_Val", 0) +
+         Constant("IsMotionCam3DColor_Val", 0) + Constant("IsAlphaScanner_Val", 0) +
+         Constant("IsNotAlphaScanner_Val", 1);
+}
+
+}  // namespace
+
+std::string ScannerGenicam() {
+  return R"xml(<?xml version="1.0" encoding="utf-8"?>
+<RegisterDescription ModelName="PhoXi3DScan" VendorName="Photoneo"
     StandardNameSpace="GEV" SchemaMajorVersion="1" SchemaMinorVersion="1" SchemaSubMinorVersion="0"
-    MajorVersion="1" MinorVersion="0" SubMinorVersion="0" ToolTip="Organised range images"
+    MajorVersion="1" MinorVersion="0" SubMinorVersion="0" ToolTip="Emulated scanner"
     ProductGuid="0" VersionGuid="0" xmlns="http://www.genicam.org/GenApi/Version_1_1">
-
-  <Category Name="Root">
-    <pFeature>DeviceControl</pFeature>
-    <pFeature>AcquisitionControl</pFeature>
-    <pFeature>ImageFormatControl</pFeature>
-    <pFeature>Scan3dControl</pFeature>
-    <pFeature>TransportLayerControl</pFeature>
-    <pFeature>UserSetControl</pFeature>
-    <pFeature>PhotoneoControl</pFeature>
-  </Category>
-
-  <Category Name="DeviceControl">
-    <pFeature>DeviceVendorName</pFeature>
-    <pFeature>DeviceModelName</pFeature>
-    <pFeature>DeviceVersion</pFeature>
-    <pFeature>DeviceManufacturerInfo</pFeature>
-    <pFeature>DeviceSerialNumber</pFeature>
-  </Category>
-  <StringReg Name="DeviceVendorName">
-    <Address>0x48</Address><Length>32</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
-  </StringReg>
-  <StringReg Name="DeviceModelName">
-    <Address>0x68</Address><Length>32</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
-  </StringReg>
-  <StringReg Name="DeviceVersion">
-    <Address>0x88</Address><Length>32</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
-  </StringReg>
-  <StringReg Name="DeviceManufacturerInfo">
-    <Address>0xa8</Address><Length>48</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
-  </StringReg>
-  <StringReg Name="DeviceSerialNumber">
-    <Address>0xd8</Address><Length>16</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
-  </StringReg>
-
-  <Category Name="AcquisitionControl">
-    <pFeature>AcquisitionMode</pFeature>
-    <pFeature>AcquisitionStart</pFeature>
-    <pFeature>AcquisitionStop</pFeature>
-    <pFeature>TriggerSelector</pFeature>
-    <pFeature>TriggerMode</pFeature>
-    <pFeature>TriggerSource</pFeature>
-    <pFeature>TriggerActivation</pFeature>
-    <pFeature>TriggerSoftware</pFeature>
-  </Category>
-  <Enumeration Name="AcquisitionMode">
-    <EnumEntry Name="Continuous"><Value>1</Value></EnumEntry>
-    <pValue>AcquisitionModeReg</pValue>
-  </Enumeration>
-  <IntReg Name="AcquisitionModeReg">
-    <Address>0xb000</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Command Name="AcquisitionStart">
-    <pValue>AcquisitionReg</pValue><CommandValue>1</CommandValue>
-  </Command>
-  <Command Name="AcquisitionStop">
-    <pValue>AcquisitionReg</pValue><CommandValue>0</CommandValue>
-  </Command>
-  <IntReg Name="AcquisitionReg">
-    <Address>0xb004</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Enumeration Name="TriggerSelector">
-    <EnumEntry Name="FrameStart"><Value>0</Value></EnumEntry>
-    <pValue>TriggerSelectorReg</pValue>
-  </Enumeration>
-  <IntReg Name="TriggerSelectorReg">
-    <Address>0xb008</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Enumeration Name="TriggerMode">
-    <EnumEntry Name="Off"><Value>0</Value></EnumEntry>
-    <EnumEntry Name="On"><Value>1</Value></EnumEntry>
-    <pValue>TriggerModeReg</pValue>
-  </Enumeration>
-  <IntReg Name="TriggerModeReg">
-    <Address>0xb00c</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Enumeration Name="TriggerSource">
-    <EnumEntry Name="Line1"><Value>0</Value></EnumEntry>
-    <EnumEntry Name="Software"><Value>1</Value></EnumEntry>
-    <pValue>TriggerSourceReg</pValue>
-  </Enumeration>
-  <IntReg Name="TriggerSourceReg">
-    <Address>0xb010</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Enumeration Name="TriggerActivation">
-    <EnumEntry Name="RisingEdge"><Value>0</Value></EnumEntry>
-    <EnumEntry Name="FallingEdge"><Value>1</Value></EnumEntry>
-    <pValue>TriggerActivationReg</pValue>
-  </Enumeration>
-  <IntReg Name="TriggerActivationReg">
-    <Address>0xb018</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Command Name="TriggerSoftware">
-    <pValue>TriggerSoftwareReg</pValue><CommandValue>1</CommandValue>
-  </Command>
-  <IntReg Name="TriggerSoftwareReg">
-    <Address>0xb014</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-
-  <Category Name="ImageFormatControl">
-    <pFeature>Width</pFeature>
-    <pFeature>Height</pFeature>
-    <pFeature>ComponentSelector</pFeature>
-    <pFeature>ComponentEnable</pFeature>
-    <pFeature>ComponentIDValue</pFeature>
-    <pFeature>PixelFormat</pFeature>
-  </Category>
-  <Integer Name="Width"><pValue>WidthReg</pValue></Integer>
-  <IntReg Name="WidthReg">
-    <Address>0xb020</Address><Length>4</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Integer Name="Height"><pValue>HeightReg</pValue></Integer>
-  <IntReg Name="HeightReg">
-    <Address>0xb024</Address><Length>4</Length><AccessMode>RO</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Enumeration Name="ComponentSelector">
-    <EnumEntry Name="Range"><Value>4</Value></EnumEntry>
-    <pValue>ComponentSelectorReg</pValue>
-  </Enumeration>
-  <IntReg Name="ComponentSelectorReg">
-    <Address>0xb030</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Boolean Name="ComponentEnable">
-    <pValue>ComponentEnableReg</pValue><OnValue>1</OnValue><OffValue>0</OffValue>
-  </Boolean>
-  <IntReg Name="ComponentEnableReg">
-    <Address>0xb034</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Integer Name="ComponentIDValue"><Value>4</Value></Integer>
-  <Enumeration Name="PixelFormat">
-    <EnumEntry Name="Coord3D_ABC32f"><Value>0x026000c0</Value></EnumEntry>
-    <pValue>PixelFormatReg</pValue>
-  </Enumeration>
-  <IntReg Name="PixelFormatReg">
-    <Address>0xb028</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-
-  <Category Name="Scan3dControl">
-    <pFeature>Scan3dOutputMode</pFeature>
-    <pFeature>Scan3dDistanceUnit</pFeature>
-  </Category>
-  <Enumeration Name="Scan3dOutputMode">
-    <EnumEntry Name="CalibratedABC_Grid"><Value>0</Value></EnumEntry>
-    <Value>0</Value>
-  </Enumeration>
-  <Enumeration Name="Scan3dDistanceUnit">
-    <EnumEntry Name="Millimeter"><Value>0</Value></EnumEntry>
-    <Value>0</Value>
-  </Enumeration>
-
-  <Category Name="TransportLayerControl"><pFeature>PayloadSize</pFeature></Category>
-  <Integer Name="PayloadSize"><pValue>PayloadSizeCalc</pValue></Integer>
-  <IntSwissKnife Name="PayloadSizeCalc">
-    <pVariable Name="W">Width</pVariable>
-    <pVariable Name="H">Height</pVariable>
-    <Formula>W * H * 12</Formula>
-  </IntSwissKnife>
-
-  <Category Name="UserSetControl">
-    <pFeature>UserSetSelector</pFeature>
-    <pFeature>UserSetLoad</pFeature>
-    <pFeature>UserSetSave</pFeature>
-    <pFeature>UserSetReset</pFeature>
-    <pFeature>UserSetDescription</pFeature>
-  </Category>
-  <Enumeration Name="UserSetSelector">
-    <EnumEntry Name="Default"><Value>0</Value></EnumEntry>
-    <EnumEntry Name="UserSet0"><Value>1</Value></EnumEntry>
-    <EnumEntry Name="UserSet1"><Value>2</Value></EnumEntry>
-    <pValue>UserSetSelectorReg</pValue>
-  </Enumeration>
-  <IntReg Name="UserSetSelectorReg">
-    <Address>0xb0a0</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Command Name="UserSetLoad">
-    <pValue>UserSetLoadReg</pValue><CommandValue>1</CommandValue>
-  </Command>
-  <IntReg Name="UserSetLoadReg">
-    <Address>0xb0a4</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Command Name="UserSetSave">
-    <pValue>UserSetSaveReg</pValue><CommandValue>1</CommandValue>
-  </Command>
-  <IntReg Name="UserSetSaveReg">
-    <Address>0xb0a8</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Command Name="UserSetReset">
-    <pValue>UserSetResetReg</pValue><CommandValue>1</CommandValue>
-  </Command>
-  <IntReg Name="UserSetResetReg">
-    <Address>0xb0ac</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <StringReg Name="UserSetDescription">
-    <Address>0xb200</Address><Length>64</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable>
-  </StringReg>
-
-  <Category Name="PhotoneoControl">
-    <pFeature>OperationMode</pFeature>
-    <pFeature>CameraExposure</pFeature>
-    <pFeature>CameraTextureSource</pFeature>
-    <pFeature>NormalsEstimationRadius</pFeature>
-    <pFeature>EnableJumboFrames</pFeature>
-  </Category>
-  <Enumeration Name="OperationMode">
-    <EnumEntry Name="Scanner"><Value>0</Value></EnumEntry>
-    <EnumEntry Name="Camera"><Value>1</Value></EnumEntry>
-    <pValue>OperationModeReg</pValue>
-  </Enumeration>
-  <IntReg Name="OperationModeReg">
-    <Address>0xb240</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Float Name="CameraExposure">
-    <pValue>CameraExposureReg</pValue><Min>10.24</Min><Max>100.352</Max><Unit>ms</Unit>
-  </Float>
-  <FloatReg Name="CameraExposureReg">
-    <Address>0xb244</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Endianess>BigEndian</Endianess>
-  </FloatReg>
-  <Enumeration Name="CameraTextureSource">
-    <EnumEntry Name="Laser"><Value>0</Value></EnumEntry>
-    <EnumEntry Name="LED"><Value>1</Value></EnumEntry>
-    <pValue>CameraTextureSourceReg</pValue>
-  </Enumeration>
-  <IntReg Name="CameraTextureSourceReg">
-    <Address>0xb248</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Integer Name="NormalsEstimationRadius">
-    <pValue>NormalsEstimationRadiusReg</pValue><Min>0</Min><Max>4</Max>
-  </Integer>
-  <IntReg Name="NormalsEstimationRadiusReg">
-    <Address>0xb24c</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-  <Boolean Name="EnableJumboFrames">
-    <pValue>EnableJumboFramesReg</pValue><OnValue>1</OnValue><OffValue>0</OffValue>
-  </Boolean>
-  <IntReg Name="EnableJumboFramesReg">
-    <Address>0xb250</Address><Length>4</Length><AccessMode>RW</AccessMode><pPort>Device</pPort>
-    <Cachable>NoCache</Cachable><Sign>Unsigned</Sign><Endianess>BigEndian</Endianess>
-  </IntReg>
-
-  <Port Name="Device"></Port>
-</RegisterDescription>
-)xml";
+)xml" +
+         Category("Root",
+                  {"DeviceControl", "AcquisitionControl", "ImageFormatControl", "Scan3dControl",
+                   "TransportLayerControl", "UserSetControl", "PhotoneoControl"}) +
+         DeviceControl() + AcquisitionControl() + ImageFormatControl() + Scan3dControl() +
+         TransportLayerControl() + UserSetControl() + PhotoneoControl() +
+         "<Port Name=\"Device\"></Port>\n</RegisterDescription>\n";
+}
 
 }  // namespace tubetwin

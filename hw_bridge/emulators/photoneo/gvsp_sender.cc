@@ -80,10 +80,50 @@ struct GvspSender::Impl {
     return !stop;
   }
 
-  static std::size_t Room(const Frame& frame) { return frame.packet_size - kGvspOverhead; }
+  static std::size_t Room(const Frame& frame) {
+    return frame.packet_size - (frame.multipart ? kGvspPartsOverhead : kGvspImageOverhead);
+  }
+  static std::size_t PacketsOf(const Frame& frame, std::size_t part) {
+    return (frame.bytes[part].size() + Room(frame) - 1) / Room(frame);
+  }
   /// Of the payload; the leader comes before them, the trailer after them.
   static std::size_t Packets(const Frame& frame) {
-    return (frame.bytes.size() + Room(frame) - 1) / Room(frame);
+    std::size_t packets = 0;
+    for (std::size_t part = 0; part < frame.parts.size(); ++part) packets += PacketsOf(frame, part);
+    return packets;
+  }
+
+  /// What a packet of the payload holds.
+  struct Piece {
+    std::size_t part = 0;
+    std::size_t first = 0, size = 0;  ///< Bytes of the part.
+    std::size_t before = 0;           ///< Bytes of the parts before it.
+  };
+  static Piece PieceOf(const Frame& frame, std::size_t packet) {
+    Piece piece;
+    std::size_t left = packet - 1;
+    while (left >= PacketsOf(frame, piece.part)) {
+      left -= PacketsOf(frame, piece.part);
+      piece.before += frame.bytes[piece.part].size();
+      ++piece.part;
+    }
+    piece.first = left * Room(frame);
+    piece.size = std::min(Room(frame), frame.bytes[piece.part].size() - piece.first);
+    return piece;
+  }
+
+  static std::string Leader(const Frame& frame) {
+    if (frame.multipart) return EncodeGvspPartsLeader(frame.id, frame.parts);
+    return EncodeGvspImageLeader(frame.id, frame.parts.front(), frame.chunks);
+  }
+  static std::string Trailer(const Frame& frame, std::uint32_t id) {
+    if (frame.multipart) return EncodeGvspPartsTrailer(frame.id, id);
+    return EncodeGvspImageTrailer(frame.id, frame.parts.front(), frame.chunks, id);
+  }
+  static std::string Header(const Frame& frame, std::uint32_t id, const Piece& piece) {
+    if (!frame.multipart) return EncodeGvspImageHeader(frame.id, id);
+    const auto part = static_cast<unsigned>(piece.part);
+    return EncodeGvspPartsHeader(frame.id, id, part, piece.before + piece.first);
   }
 
   /// False: it cannot be sent.
@@ -92,15 +132,15 @@ struct GvspSender::Impl {
     const auto put = [&](const auto& bytes) { socket.send_to(bytes, client, 0, error); };
     const auto id = static_cast<std::uint32_t>(packet);
     if (packet == 0) {
-      put(asio::buffer(EncodeGvspLeader(frame.image)));
+      put(asio::buffer(Leader(frame)));
     } else if (packet > Packets(frame)) {
-      put(asio::buffer(EncodeGvspTrailer(frame.image, id)));
+      put(asio::buffer(Trailer(frame, id)));
     } else {
-      const std::string header = EncodeGvspPayloadHeader(frame.image.frame_id, id);
-      const std::size_t at = (packet - 1) * Room(frame);
+      const Piece piece = PieceOf(frame, packet);
+      const std::string header = Header(frame, id, piece);
       put(std::array<asio::const_buffer, 2>{
           asio::buffer(header),
-          asio::buffer(frame.bytes.data() + at, std::min(Room(frame), frame.bytes.size() - at))});
+          asio::buffer(frame.bytes[piece.part].data() + piece.first, piece.size)});
     }
     return !error;
   }
@@ -118,7 +158,7 @@ GvspSender::~GvspSender() = default;
 
 void GvspSender::Send(Frame given, const GvspClient& to, const std::atomic<bool>& stop) {
   constexpr std::size_t kMaxDatagram = 65000;
-  if (given.packet_size <= kGvspOverhead || given.packet_size > kMaxDatagram) return;
+  if (given.packet_size <= kGvspPartsOverhead || given.packet_size > kMaxDatagram) return;
   const auto frame = std::make_shared<const Frame>(std::move(given));
   {
     const std::lock_guard lock(impl_->mutex);
@@ -145,17 +185,20 @@ void GvspSender::Send(Frame given, const GvspClient& to, const std::atomic<bool>
   if (sent == packets && ok) impl_->Put(*frame, packets + 1, client);
 }
 
-void GvspSender::SendAgain(std::uint16_t frame_id, std::uint32_t first, std::uint32_t last,
-                           const GvspClient& to) {
+void GvspSender::SendAgain(const GvcpResend& packets, const GvspClient& to) {
   std::shared_ptr<const Frame> frame;
   {
     const std::lock_guard lock(impl_->mutex);
     frame = impl_->newest;
   }
-  if (!frame || frame->image.frame_id != frame_id) return;
+  if (!frame || frame->multipart != packets.long_ids) return;
+  const std::uint64_t id = frame->multipart ? frame->id.id : GvspShortId(frame->id);
+  if (id != packets.frame_id) return;
   const udp::endpoint client(asio::ip::address_v4(to.address), static_cast<std::uint16_t>(to.port));
-  const std::size_t end = std::min<std::size_t>(last, Impl::Packets(*frame) + 1);
-  for (std::size_t packet = first; packet <= end; ++packet) impl_->Put(*frame, packet, client);
+  const std::size_t end = std::min<std::size_t>(packets.last, Impl::Packets(*frame) + 1);
+  for (std::size_t packet = packets.first; packet <= end; ++packet) {
+    impl_->Put(*frame, packet, client);
+  }
 }
 
 void GvspSender::SendTestPacket(const GvspClient& to, std::uint32_t packet_size) {

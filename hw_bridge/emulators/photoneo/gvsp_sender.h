@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hw_bridge/codecs/gvcp.h"
 #include "hw_bridge/codecs/gvsp.h"
 
 namespace tubetwin {
@@ -17,7 +18,7 @@ struct GvspClient {
   bool operator==(const GvspClient&) const = default;
 };
 
-/// Sends image frames by GVSP, at the speed that the client can take: over Ethernet 100 MB/s, which
+/// Sends frames by GVSP, at the speed that the client can take: over Ethernet 100 MB/s, which
 /// is what its wire holds; on loopback, where nothing else holds the sender back, as fast as the
 /// client reads (the kernel tells how much waits at its port). A client that takes packets past its
 /// port, as aravis does for root, leaves there what comes: to this one they go as over Ethernet.
@@ -28,18 +29,20 @@ class GvspSender {
   ~GvspSender();
 
   struct Frame {
-    GvspImage image;
-    std::vector<std::byte> bytes;
-    std::uint32_t packet_size = 0;  ///< As agreed on, with all headers.
-    double sent_share = 1.0;        ///< Of the payload packets, from the first one on.
+    GvspFrame id;
+    bool multipart = false;  ///< Else one image: the only part.
+    bool chunks = false;     ///< Of an image: see EncodeGvspImageLeader.
+    std::vector<GvspPart> parts;
+    std::vector<std::vector<std::byte>> bytes;  ///< Of each part.
+    std::uint32_t packet_size = 0;              ///< As agreed on, with all headers.
+    double sent_share = 1.0;                    ///< Of the payload packets, from the first one on.
   };
   /// Sends all of the frame. Returns early when `stop` is set, or the client has closed its port.
   /// Any thread, one frame at a time.
   void Send(Frame frame, const GvspClient& to, const std::atomic<bool>& stop);
   /// Packets of the newest frame again, of those that were meant to be sent; others are left out.
   /// Any thread.
-  void SendAgain(std::uint16_t frame_id, std::uint32_t first, std::uint32_t last,
-                 const GvspClient& to);
+  void SendAgain(const GvcpResend& packets, const GvspClient& to);
   /// One packet of that size with all headers, not to be cut in pieces on its way. Any thread.
   void SendTestPacket(const GvspClient& to, std::uint32_t packet_size);
 

@@ -25,6 +25,7 @@ ScanFaults::Ordered ScanFaults::Next() {
 
 void ClearPoints(OrganizedCloud& cloud) {
   for (Eigen::Vector3f& p : cloud.p_SP) p = InvalidPoint();
+  for (float& brightness : cloud.intensity) brightness = 0;
 }
 
 }  // namespace tubetwin

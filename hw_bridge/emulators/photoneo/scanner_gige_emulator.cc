@@ -1,28 +1,34 @@
 #include "hw_bridge/emulators/photoneo/scanner_gige_emulator.h"
 
 #include <chrono>
-#include <cstring>
 #include <exception>
 #include <utility>
 
+#include "hw_bridge/codecs/big_endian.h"
 #include "models/base/error.h"
 #include "models/base/random.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr std::size_t kPointBytes = 12;
+/// Behind each chunk's data: its id and length, big-endian.
+void EndChunk(std::vector<std::byte>& bytes, std::uint32_t id, std::size_t size) {
+  std::string trailer;
+  PutU32(trailer, id);
+  PutU32(trailer, static_cast<std::uint32_t>(size));
+  for (const char each : trailer) bytes.push_back(static_cast<std::byte>(each));
+}
 
-std::vector<std::byte> Millimetres(const OrganizedCloud& cloud) {
-  std::vector<std::byte> bytes(cloud.size() * kPointBytes);
-  std::byte* out = bytes.data();
-  for (const Eigen::Vector3f& p : cloud.p_SP) {
-    Eigen::Vector3f mm = Eigen::Vector3f::Zero();
-    if (IsValid(p)) mm = (p.cast<double>() * 1000.0).cast<float>();
-    std::memcpy(out, mm.data(), kPointBytes);
-    out += kPointBytes;
+/// All parts as one image with chunks.
+void ChainAsChunks(GvspSender::Frame& frame) {
+  std::vector<std::byte> chain;
+  for (std::size_t i = 0; i < frame.parts.size(); ++i) {
+    chain.insert(chain.end(), frame.bytes[i].begin(), frame.bytes[i].end());
+    EndChunk(chain, frame.parts[i].purpose_id, frame.bytes[i].size());
   }
-  return bytes;
+  frame.chunks = true;
+  frame.parts.resize(1);
+  frame.bytes = {std::move(chain)};
 }
 
 void FillWithGarbage(std::vector<std::byte>& bytes, std::uint64_t seed) {
@@ -35,18 +41,13 @@ void Corrupt(std::vector<std::byte>& bytes) {
   for (std::size_t i = 3; i < bytes.size(); i += 7) bytes[i] ^= std::byte{0x95};
 }
 
-/// 16 bits, 0 is no frame.
-std::uint16_t NextFrame(std::uint16_t frame_id) {
-  return frame_id == 0xffff ? 1 : static_cast<std::uint16_t>(frame_id + 1);
-}
-
 }  // namespace
 
 ScannerGigeEmulator::ScannerGigeEmulator(Scanner& scanner, const ScannerGigeConfig& config)
     : scanner_(scanner),
       config_(config),
       sender_(config.listen),
-      camera_(config.listen, config.width, config.height, sender_) {}
+      camera_(config.listen, config.width, config.height, config.optics.focal_px, sender_) {}
 
 ScannerGigeEmulator::~ScannerGigeEmulator() { stop_sending_ = true; }  // The futures wait.
 
@@ -58,7 +59,7 @@ void ScannerGigeEmulator::Tick(TimeNs now) {
     case Stage::kScanning:
       return FollowScan();
     case Stage::kComputing:
-      return TakeImage(now);
+      return TakeFrame(now);
     case Stage::kHolding:
       if (Outdated()) return GiveUp("");
       if (now >= send_at_) Send(now);
@@ -98,22 +99,44 @@ void ScannerGigeEmulator::FollowScan() {
   }
 }
 
+ScannerGigeEmulator::Taken ScannerGigeEmulator::FrameOf(OrganizedCloud cloud,
+                                                        const ScannerGigeConfig& config,
+                                                        const GigeFrameSettings& settings) {
+  Taken taken;
+  if (cloud.width != config.width || cloud.height != config.height) {
+    taken.problem = "the cloud has " + std::to_string(cloud.width) + " x " +
+                    std::to_string(cloud.height) + " points, " + std::to_string(config.width) +
+                    " x " + std::to_string(config.height) + " are announced";
+    return taken;
+  }
+  taken.frame.multipart = settings.multipart;
+  for (const auto& [component, pixel_format] : settings.components) {
+    std::vector<std::byte> bytes =
+        ComponentBytes(cloud, component, pixel_format, config.optics, settings.normals_radius);
+    const ScanComponentInfo& info = InfoOf(component);
+    taken.frame.parts.push_back({info.id, info.data, pixel_format,
+                                 static_cast<std::uint32_t>(cloud.width),
+                                 static_cast<std::uint32_t>(cloud.height), bytes.size()});
+    taken.frame.bytes.push_back(std::move(bytes));
+  }
+  if (taken.frame.parts.empty()) taken.problem = "no component is enabled";
+  return taken;
+}
+
 void ScannerGigeEmulator::Compute() {
   const auto compute = [take = scanner_.TakeLater(), fault = fault_.fault, number = triggers_,
-                        corrupt = link_.corrupt, config = config_]() -> Image {
+                        corrupt = link_.corrupt, config = config_,
+                        settings = camera_.frame_settings()]() -> Taken {
     try {
       OrganizedCloud cloud = take();
-      if (cloud.width != config.width || cloud.height != config.height) {
-        return {{},
-                "the cloud has " + std::to_string(cloud.width) + " x " +
-                    std::to_string(cloud.height) + " points, " + std::to_string(config.width) +
-                    " x " + std::to_string(config.height) + " are announced"};
-      }
       if (fault == ScanFault::kEmptyCloud) ClearPoints(cloud);
-      std::vector<std::byte> bytes = Millimetres(cloud);
-      if (fault == ScanFault::kGarbage) FillWithGarbage(bytes, number);
-      if (corrupt) Corrupt(bytes);
-      return {std::move(bytes), ""};
+      Taken taken = FrameOf(std::move(cloud), config, settings);
+      for (std::vector<std::byte>& bytes : taken.frame.bytes) {
+        if (fault == ScanFault::kGarbage) FillWithGarbage(bytes, number);
+        if (corrupt) Corrupt(bytes);
+      }
+      if (!settings.multipart && taken.frame.parts.size() > 1) ChainAsChunks(taken.frame);
+      return taken;
     } catch (const std::exception& error) {
       return {{}, error.what()};
     }
@@ -122,11 +145,11 @@ void ScannerGigeEmulator::Compute() {
   stage_ = Stage::kComputing;
 }
 
-void ScannerGigeEmulator::TakeImage(TimeNs now) {
+void ScannerGigeEmulator::TakeFrame(TimeNs now) {
   if (computing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  Image image = computing_.get();
-  if (!image.problem.empty()) return GiveUp(image.problem);
-  bytes_ = std::move(image.bytes);
+  Taken taken = computing_.get();
+  if (!taken.problem.empty()) return GiveUp(taken.problem);
+  frame_ = std::move(taken.frame);
   send_at_ = now + link_.delay + FromSeconds(fault_.delay_s);
   stage_ = Stage::kHolding;
 }
@@ -134,23 +157,18 @@ void ScannerGigeEmulator::TakeImage(TimeNs now) {
 void ScannerGigeEmulator::Send(TimeNs now) {
   if (link_.drop) return GiveUp("");
   constexpr double kTruncatedShare = 0.6;
-  GvspSender::Frame frame;
-  frame.image.timestamp_ns = static_cast<std::uint64_t>(now.count());
-  frame.image.pixel_format = kPixelCoord3dAbc32f;
-  frame.image.width = static_cast<std::uint32_t>(config_.width);
-  frame.image.height = static_cast<std::uint32_t>(config_.height);
-  frame.bytes = std::exchange(bytes_, {});
+  GvspSender::Frame frame = std::exchange(frame_, {});
+  frame.id.timestamp_ns = static_cast<std::uint64_t>(now.count());
   frame.packet_size = camera_.packet_size();
   if (fault_.fault == ScanFault::kTruncated) frame.sent_share = kTruncatedShare;
   const int copies = link_.duplicate ? 2 : 1;
-  const std::uint16_t before = frame_id_;
-  for (int i = 0; i < copies; ++i) frame_id_ = NextFrame(frame_id_);
+  const std::uint64_t before = frame_id_;
+  frame_id_ += static_cast<std::uint64_t>(copies);
   stop_sending_ = false;
   sending_ = std::async(std::launch::async, [this, copies, before, client = client_,
                                              frame = std::move(frame)]() mutable {
-    frame.image.frame_id = before;
-    for (int i = 0; i < copies; ++i) {
-      frame.image.frame_id = NextFrame(frame.image.frame_id);
+    for (int i = 1; i <= copies; ++i) {
+      frame.id.id = before + static_cast<std::uint64_t>(i);
       sender_.Send(frame, client, stop_sending_);
     }
   });
@@ -167,7 +185,7 @@ void ScannerGigeEmulator::FollowSending() {
 
 void ScannerGigeEmulator::GiveUp(const std::string& problem) {
   if (!problem.empty()) last_problem_ = problem;
-  bytes_.clear();
+  frame_ = {};
   stage_ = Stage::kIdle;
 }
 

@@ -10,6 +10,7 @@
 
 #include "hw_bridge/cell/devices.h"
 #include "hw_bridge/emulators/photoneo/gige_control.h"
+#include "hw_bridge/emulators/photoneo/scan_components.h"
 #include "hw_bridge/emulators/photoneo/scanner_emulator.h"
 
 namespace tubetwin {
@@ -17,11 +18,16 @@ namespace tubetwin {
 struct ScannerGigeConfig {
   std::string listen = "127.0.0.1";  ///< IPv4 address; the port, UDP 3956, is fixed.
   int width = 1032, height = 772;    ///< Of every cloud of the scanner.
+  ScanOptics optics = {};
 };
 
-/// A PhoXi on GigE Vision over any Scanner: software trigger in, range image Coord3D_ABC32f in
-/// millimetres out, 0 0 0 where nothing was seen, no pose and no labels. For its traffic on the
-/// network, and for the networks that it must be kept from, see GigeControl.
+/// A PhoXi on GigE Vision over any Scanner: software trigger in, or none at all, the enabled
+/// components out (ScanComponent; the range image as shipped, in millimetres), no pose and no
+/// labels. For its traffic on the network, and for the networks that it must be kept from, see
+/// GigeControl.
+///
+/// The components are the parts of a multi-part frame when the client wants that; else the first is
+/// an image and further ones come behind it as chunks. Without any enabled nothing is sent.
 ///
 /// A trigger starts a scan; one that comes during a scan discards that scan and starts another
 /// after it. What is left to compute, and the sending, run on a thread of their own, one scan at a
@@ -38,16 +44,18 @@ class ScannerGigeEmulator : public ScannerEmulator {
 
  private:
   enum class Stage { kIdle, kScanning, kComputing, kHolding, kSending };
-  struct Image {
-    std::vector<std::byte> bytes;
-    std::string problem;  ///< Then there are no bytes.
+  struct Taken {
+    GvspSender::Frame frame;
+    std::string problem;  ///< Then there is no frame.
   };
+  static Taken FrameOf(OrganizedCloud cloud, const ScannerGigeConfig& config,
+                       const GigeFrameSettings& settings);
   /// Nobody waits for the scan that runs any more.
   bool Outdated() const;
   void Start();
   void FollowScan();
   void Compute();
-  void TakeImage(TimeNs now);
+  void TakeFrame(TimeNs now);
   void Send(TimeNs now);
   void FollowSending();
   void GiveUp(const std::string& problem);
@@ -60,10 +68,10 @@ class ScannerGigeEmulator : public ScannerEmulator {
   Stage stage_ = Stage::kIdle;
   GvspClient client_;  ///< Who wanted the scan that runs.
   ScanFaults::Ordered fault_;
-  std::future<Image> computing_;
-  std::vector<std::byte> bytes_;  ///< Wait to be sent.
+  std::future<Taken> computing_;
+  GvspSender::Frame frame_;  ///< Waits to be sent.
   TimeNs send_at_{0};
-  std::uint16_t frame_id_ = 0;  ///< The last one.
+  std::uint64_t frame_id_ = 0;  ///< The last one.
   std::atomic<bool> stop_sending_ = false;
   std::future<void> sending_;
 };
