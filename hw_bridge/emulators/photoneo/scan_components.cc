@@ -153,6 +153,7 @@ std::vector<std::byte> ComponentBytes(const OrganizedCloud& cloud, ScanComponent
   out.reserve(cloud.size() * BytesPerPixel(pixel_format));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3f& p = cloud.p_SP[i];
+    const std::size_t row = i / static_cast<std::size_t>(cloud.width);
     switch (component) {
       case ScanComponent::kIntensity:
         Put(out, Mono10(cloud.intensity.empty() ? 0.0f : cloud.intensity[i]));
@@ -167,7 +168,7 @@ std::vector<std::byte> ComponentBytes(const OrganizedCloud& cloud, ScanComponent
         Put(out, static_cast<float>(i % static_cast<std::size_t>(cloud.width)));
         break;
       case ScanComponent::kMapB:
-        Put(out, static_cast<float>(i / static_cast<std::size_t>(cloud.width)));
+        Put(out, static_cast<float>(row));
         break;
       case ScanComponent::kNormal:
         PutNormal(out, surfaces[i].normal, pixel_format);
