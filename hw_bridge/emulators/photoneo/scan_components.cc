@@ -1,6 +1,5 @@
 #include "hw_bridge/emulators/photoneo/scan_components.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -26,7 +25,7 @@ constexpr ScanComponentInfo kInfos[kScanComponents] = {
 /// Neighbours whose line to the point is steeper than this slope lie behind a jump of depth.
 constexpr double kSteepest = 6.0;  // 80 degrees, where the scanner sees nothing any more.
 constexpr int kLeastNeighbours = 4;
-/// Neighbours in a line tell no plane: the fit's middle eigenvalue against its largest.
+/// Neighbours in a line tell no plane: how much less they spread across it than along it, squared.
 constexpr double kLine = 0.01;
 constexpr float kSteepestCosine = 0.17364818f;  // 80 degrees, as the noise of the twin's scanner.
 
@@ -36,53 +35,75 @@ void Put(std::vector<std::byte>& out, const Value& value) {
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
-/// Around one pixel, and not across a jump of depth; the pixel's own point too.
-class Neighbourhood {
+/// Fits planes to the points around a pixel that no jump of depth parts from it. Errors of a
+/// scanner are along its rays: what is fitted is 1/z, which a plane n p = d has as (n/d) (x/z, y/z,
+/// 1).
+class PlaneFit {
  public:
-  Neighbourhood(const OrganizedCloud& cloud, const ScanOptics& optics, int radius)
+  PlaneFit(const OrganizedCloud& cloud, const ScanOptics& optics, int radius)
       : cloud_(cloud), focal_px_(optics.focal_px), radius_(radius) {}
 
   PointSurface At(int row, int column) {
     const Eigen::Vector3d centre = Point(row, column).cast<double>();
-    points_.clear();
+    sums_ = {};
     for (int r = std::max(0, row - radius_); r <= std::min(cloud_.height - 1, row + radius_); ++r) {
       for (int c = std::max(0, column - radius_); c <= std::min(cloud_.width - 1, column + radius_);
            ++c) {
-        const Eigen::Vector3f& p = Point(r, c);
-        if (!IsValid(p)) continue;
-        const Eigen::Vector3d away = p.cast<double>() - centre;
+        const Eigen::Vector3d p = Point(r, c).cast<double>();
+        if (!(p.z() > 0)) continue;  // Empty pixels too.
         const int pixels = std::max(std::abs(r - row), std::abs(c - column));
-        if (away.norm() <= kSteepest * pixels * centre.z() / focal_px_) points_.push_back(away);
+        const double reach = kSteepest * pixels * centre.z() / focal_px_;
+        if ((p - centre).squaredNorm() <= reach * reach) Add(p, centre);
       }
     }
-    return Fit(centre);
+    return Solve(centre);
   }
 
  private:
+  /// Of u = x/z, v = y/z and w = 1/z, each from the centre's on.
+  struct Sums {
+    double n = 0, u = 0, v = 0, w = 0, uu = 0, uv = 0, vv = 0, uw = 0, vw = 0;
+  };
+
   const Eigen::Vector3f& Point(int row, int column) const {
     return cloud_.p_SP[static_cast<std::size_t>(row) * cloud_.width + column];
   }
 
-  PointSurface Fit(const Eigen::Vector3d& centre) const {
-    if (points_.size() < kLeastNeighbours) return {};
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector3d& p : points_) mean += p;
-    mean /= static_cast<double>(points_.size());
-    Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-    for (const Eigen::Vector3d& p : points_) spread += (p - mean) * (p - mean).transpose();
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(spread);
-    const Eigen::Vector3d& values = solver.eigenvalues();  // Ascending.
-    if (!(values[1] > kLine * values[2])) return {};
-    Eigen::Vector3d normal = solver.eigenvectors().col(0);
-    if (normal.dot(centre) > 0) normal = -normal;
-    return {normal.cast<float>(), static_cast<float>(std::abs(normal.dot(mean)))};
+  void Add(const Eigen::Vector3d& p, const Eigen::Vector3d& centre) {
+    const double w = 1 / p.z(), u = p.x() * w - centre.x() / centre.z();
+    const double v = p.y() * w - centre.y() / centre.z(), dw = w - 1 / centre.z();
+    sums_.n += 1;
+    sums_.u += u;
+    sums_.v += v;
+    sums_.w += dw;
+    sums_.uu += u * u;
+    sums_.uv += u * v;
+    sums_.vv += v * v;
+    sums_.uw += u * dw;
+    sums_.vw += v * dw;
+  }
+
+  PointSurface Solve(const Eigen::Vector3d& centre) const {
+    const auto& [n, u, v, w, uu, uv, vv, uw, vw] = sums_;
+    if (n < kLeastNeighbours) return {};
+    const double s_uu = uu - u * u / n, s_uv = uv - u * v / n, s_vv = vv - v * v / n;
+    const double s_uw = uw - u * w / n, s_vw = vw - v * w / n;
+    const double determinant = s_uu * s_vv - s_uv * s_uv, spread = s_uu + s_vv;
+    if (!(determinant > kLine * spread * spread)) return {};
+    const double du = (s_uw * s_vv - s_vw * s_uv) / determinant;
+    const double dv = (s_vw * s_uu - s_uw * s_uv) / determinant;
+    const double at_centre = 1 / centre.z() + (w - du * u - dv * v) / n;
+    const Eigen::Vector3d plane(
+        du, dv, at_centre - du * centre.x() / centre.z() - dv * centre.y() / centre.z());
+    const double length = plane.norm();
+    return {(-plane / length).cast<float>(),
+            static_cast<float>(std::abs(plane.dot(centre) - 1) / length)};
   }
 
   const OrganizedCloud& cloud_;
   const double focal_px_;
   const int radius_;
-  std::vector<Eigen::Vector3d> points_;  ///< Seen from the pixel's own.
+  Sums sums_;
 };
 
 void PutNormal(std::vector<std::byte>& out, Eigen::Vector3f normal, std::uint32_t format) {
@@ -119,11 +140,11 @@ const ScanComponentInfo& InfoOf(ScanComponent component) {
 std::vector<PointSurface> SurfacesOf(const OrganizedCloud& cloud, const ScanOptics& optics,
                                      int radius) {
   std::vector<PointSurface> surfaces(cloud.size());
-  Neighbourhood neighbourhood(cloud, optics, radius);
+  PlaneFit fit(cloud, optics, radius);
   for (int row = 0; row < cloud.height; ++row) {
     for (int column = 0; column < cloud.width; ++column) {
       const std::size_t at = static_cast<std::size_t>(row) * cloud.width + column;
-      if (IsValid(cloud.p_SP[at])) surfaces[at] = neighbourhood.At(row, column);
+      if (cloud.p_SP[at].z() > 0) surfaces[at] = fit.At(row, column);
     }
   }
   return surfaces;
