@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""bridge_clients.py PROGRAM: public Modbus and RDT clients, which know nothing of this project, before `tubetwin emulate`.
-Started by bridge_clients.sh, which gets the packages."""
+"""bridge_clients.py PROGRAM: public Modbus, RDT and GigE Vision clients, which know nothing of this project, before
+`tubetwin emulate`. Started by bridge_clients.sh, which gets the packages; ARV_TOOL names aravis's tool, or is empty."""
 
 import os
 import signal
 import struct
+import subprocess
 import sys
 import time
+import xml.etree.ElementTree
 
 import NetFT
 import pynetft
@@ -214,4 +216,53 @@ def rdt_pynetft(folder):
     emulation.stop()
 
 
-run_tests(modbus_tcp, modbus_rtu, object_in_the_fingers, rdt_netft, rdt_pynetft)
+NOBODY = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "--inh-caps=-all", "--bounding-set=-all"]
+
+
+def arv_tool(who, *arguments):
+    """What aravis's tool prints: its features and their values."""
+    run = subprocess.run([*who, os.environ["ARV_TOOL"], *arguments], capture_output=True, text=True, timeout=60)
+    check(run.returncode == 0, f"arv-tool {arguments}: {run.returncode} {run.stderr}")
+    return run.stdout
+
+
+def arv_control(who, *settings):
+    """{feature: value} of `arv-tool control`, by the address, as Photoneo's examples are called."""
+    lines = arv_tool(who, "-a", "127.0.0.1", "control", *settings).splitlines()
+    return dict(line.split(" = ", 1) for line in lines if " = " in line)
+
+
+def aravis(folder):
+    """aravis's tool as whoever runs this, and without any right: names, description, components, packets, user sets."""
+    emulation = Emulation(PROGRAM, folder + "/e", overrides=ONE_TUBE, options=[*BOUNDED, "--gige"])
+    for who in ([], NOBODY) if os.geteuid() == 0 else ([],):
+        check("Photoneo-PhoXi3DScan-TWIN-001 (127.0.0.1)" in arv_tool(who), "arv-tool finds the scanner")
+        genicam = xml.etree.ElementTree.fromstring(arv_tool(who, "-a", "127.0.0.1", "genicam"))
+        named = {node.get("Name") for node in genicam.iter()}
+        listed = {feature.text for feature in genicam.iter() if feature.tag.endswith("pFeature")}
+        check(listed <= named, f"features of categories without a node: {listed - named}")
+        told = arv_control(who, "DeviceVendorName", "DeviceModelName", "SensorWidth", "TLParamsLocked")
+        check(told["DeviceVendorName"] == "Photoneo" and told["DeviceModelName"] == "PhoXi3DScan", f"names: {told}")
+        pixels = int(told["SensorWidth"].split()[0]) * 772
+        for component, number, size in (("Intensity", 1, 2), ("Confidence", 6, 1), ("Normal", 65280, 12)):
+            alone = arv_control(who, "ComponentSelector=Range", "ComponentEnable=false",
+                                f"ComponentSelector={component}", "ComponentEnable=true", "ComponentIDValue", "PayloadSize",
+                                "ComponentEnable=false", "ComponentSelector=Range", "ComponentEnable=true")
+            check(int(alone["ComponentIDValue"].split()[0]) == number, f"{component}: {alone}")
+            check(int(alone["PayloadSize"].split()[0]) == pixels * size, f"{component}: {alone}")
+        size = arv_control(who, "GevSCPSPacketSize=9000", "GevSCPSPacketSize")["GevSCPSPacketSize"]
+        check(size.startswith("9000 min:576 max:16000"), f"packet size: {size}")
+        saved = arv_control(who, "UserSetSelector=UserSet0", "CameraExposure=40.96", "UserSetSave", "UserSetSelector=Default",
+                            "UserSetLoad", "CameraExposure")
+        check(saved["CameraExposure"].startswith("20.48"), f"the set as shipped: {saved}")
+        loaded = arv_control(who, "UserSetSelector=UserSet0", "UserSetLoad", "CameraExposure")
+        check(loaded["CameraExposure"].startswith("40.96"), f"the set that was saved: {loaded}")
+        unknown = subprocess.run([*who, os.environ["ARV_TOOL"], "-a", "127.0.0.1", "control", "UserSetSelector=UserSet7"],
+                                 capture_output=True, text=True, timeout=60)
+        check("UserSet7" in unknown.stdout + unknown.stderr, f"an unknown user set: {unknown}")
+        arv_control(who, "UserSetSelector=Default", "UserSetLoad")
+    emulation.stop()
+
+
+TESTS = [modbus_tcp, modbus_rtu, object_in_the_fingers, rdt_netft, rdt_pynetft]
+run_tests(*TESTS, *([aravis] if os.environ["ARV_TOOL"] else []))
