@@ -67,6 +67,10 @@ void CheckPart(const Part& part, ErrorKind kind, const std::string& source) {
   CheckOrder({part.search.extra_min, part.search.extra_max}, "search.extra_min, extra_max", kind,
              source);
   if (part.name.empty()) throw Error(kind, source + ": name is empty; a part needs one");
+  if (!IsPlainUtf8(part.name)) {
+    throw Error(kind, source + ": name is '" + Printable(part.name) +
+                          "'; allowed: UTF-8 without line breaks and other control characters");
+  }
   if (part.length_m < 4.0 * part.radius_m) {
     throw Error(kind, source + ": length_m " + Number(part.length_m) + " is below four radii (" +
                           Number(4.0 * part.radius_m) + "); that is no tube");

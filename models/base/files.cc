@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -16,12 +17,75 @@ namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void FailToRead(const std::string& path, int error) {
-  if (error == ENOENT || error == ENOTDIR) {
-    throw Error(ErrorKind::kMissing, path + ": no such file");
+constexpr const char kNoRegularFile[] =
+    ": is a device, pipe or socket; the name of a file is needed";
+
+std::string NameTooLong(const std::string& path) {
+  constexpr std::size_t kShown = 60;
+  return path.substr(0, kShown) +
+         "...: the name is too long; allowed: 255 bytes a name, 4095 with "
+         "its folders";
+}
+
+[[noreturn]] void FailReading(const std::string& path, int error) {
+  switch (error) {
+    case ENOENT:
+    case ENOTDIR:
+      throw Error(ErrorKind::kMissing, path + ": no such file");
+    case EACCES:
+    case EPERM:
+      throw Error(ErrorKind::kMissing, path + ": no permission to read it");
+    case ENAMETOOLONG:
+      throw Error(ErrorKind::kMissing, NameTooLong(path));
+    case ELOOP:
+      throw Error(ErrorKind::kMissing, path + ": symbolic links that lead in a circle");
+    case ENXIO:  // A socket.
+      throw Error(ErrorKind::kMissing, path + kNoRegularFile);
+    default:
+      throw Error(ErrorKind::kIo, path + ": cannot be read: " + std::strerror(error));
   }
-  throw Error(error == EIO ? ErrorKind::kIo : ErrorKind::kMissing,
-              path + ": cannot be read: " + std::strerror(error));
+}
+
+/// A regular file, open for reading.
+class ReadHandle {
+ public:
+  explicit ReadHandle(const std::string& path)
+      : path_(path), fd_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+    struct stat status {};
+    if (fd_ < 0 || ::fstat(fd_, &status) != 0) FailReading(path, errno);
+    if (S_ISREG(status.st_mode)) {
+      size_ = static_cast<std::uint64_t>(status.st_size);
+      return;
+    }
+    ::close(fd_);
+    throw Error(
+        ErrorKind::kMissing,
+        path + (S_ISDIR(status.st_mode) ? ": is a folder, a file is needed" : kNoRegularFile));
+  }
+  ~ReadHandle() { ::close(fd_); }
+  ReadHandle(const ReadHandle&) = delete;
+  ReadHandle& operator=(const ReadHandle&) = delete;
+
+  std::uint64_t size() const { return size_; }
+
+  /// 0: the end.
+  std::size_t Read(char* to, std::size_t most) const {
+    for (;;) {
+      const ssize_t size = ::read(fd_, to, most);
+      if (size >= 0) return static_cast<std::size_t>(size);
+      if (errno != EINTR) FailReading(path_, errno);
+    }
+  }
+
+ private:
+  const std::string& path_;
+  int fd_;
+  std::uint64_t size_ = 0;
+};
+
+std::string TooLarge(const std::string& path, std::uint64_t max_bytes) {
+  return path + ": holds more than " + std::to_string(max_bytes) +
+         " bytes; allowed: up to that for a file of this kind";
 }
 
 struct Descriptor {
@@ -91,20 +155,44 @@ void Replace(const std::string& path, Kept kept,
 
 }  // namespace
 
-std::string ReadFile(const std::string& path) {
-  const Descriptor opened(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (opened.fd < 0) FailToRead(path, errno);
-  std::string content;
-  char piece[65536];
-  for (;;) {
-    const ssize_t got = ::read(opened.fd, piece, sizeof piece);
-    if (got == 0) return content;
-    if (got < 0 && errno == EISDIR) {
-      throw Error(ErrorKind::kMissing, path + ": is a folder, a file is needed");
-    }
-    if (got < 0 && errno != EINTR) FailToRead(path, errno);
-    if (got > 0) content.append(piece, static_cast<std::size_t>(got));
+std::string ReadFile(const std::string& path, std::uint64_t max_bytes) {
+  const ReadHandle file(path);
+  if (file.size() > max_bytes) throw Error(ErrorKind::kBadData, TooLarge(path, max_bytes));
+  constexpr std::size_t kPiece = std::size_t{1} << 16;
+  // One byte more: the end is seen.
+  std::string content(static_cast<std::size_t>(file.size()) + 1, '\0');
+  std::size_t size = 0;
+  while (const std::size_t step = file.Read(content.data() + size, content.size() - size)) {
+    size += step;
+    if (size > max_bytes) throw Error(ErrorKind::kBadData, TooLarge(path, max_bytes));
+    if (size == content.size()) content.resize(size + kPiece);  // It grows, or told no size.
   }
+  content.resize(size);
+  return content;
+}
+
+void ForEachLine(const std::string& path, std::uint64_t max_line_bytes,
+                 const std::function<void(const std::string&, bool)>& use) {
+  const ReadHandle file(path);
+  std::array<char, 1 << 16> piece;
+  std::string line;
+  int number = 1;
+  while (const std::size_t size = file.Read(piece.data(), piece.size())) {
+    for (std::string_view rest(piece.data(), size); !rest.empty();) {
+      const std::size_t end = rest.find('\n');
+      line += rest.substr(0, end);
+      if (line.size() > max_line_bytes) {
+        throw Error(ErrorKind::kBadData,
+                    TooLarge(path + ":" + std::to_string(number), max_line_bytes));
+      }
+      if (end == std::string_view::npos) break;
+      use(line, true);
+      line.clear();
+      ++number;
+      rest.remove_prefix(end + 1);
+    }
+  }
+  if (!line.empty()) use(line, false);
 }
 
 void WriteFileAtomically(const std::string& path, std::string_view content) {

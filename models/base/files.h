@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -8,9 +9,19 @@
 
 namespace tubetwin {
 
-/// Whole content of a file. Throws Error(kMissing) when it does not exist, may not be read or is a
-/// folder, Error(kIo) when reading fails.
-std::string ReadFile(const std::string& path);
+/// What no input of this program is larger than.
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{1} << 30;
+
+/// Whole content of a regular file. Throws Error(kMissing) when it does not exist, may not be read,
+/// has a name that no file can have, or is a folder, pipe, device or socket (which might never
+/// end); Error(kBadData) when it holds more than `max_bytes`; Error(kIo) when reading fails.
+std::string ReadFile(const std::string& path, std::uint64_t max_bytes = kMaxFileBytes);
+
+/// Calls `use` with every line of a regular file, without its line break; `whole` says whether the
+/// break was there, which the last one may lack. Keeps one line in memory. Throws as ReadFile does,
+/// with Error(kBadData) naming the line for one of more than `max_line_bytes`.
+void ForEachLine(const std::string& path, std::uint64_t max_line_bytes,
+                 const std::function<void(const std::string& line, bool whole)>& use);
 
 // Files are written beside their place and then renamed: readers see the old file or the new one,
 // never half. File and folder are on the disk when the call returns, so that a power cut leaves the

@@ -296,4 +296,46 @@ TEST_CASE("describing a configuration does not change it") {
   CHECK(ToToml(c) == before);
 }
 
+TEST_CASE("TOML nested deeper than any configuration is refused before it is parsed", "[base]") {
+  const auto repeated = [](const std::string& text, int times) {
+    std::string out;
+    for (int i = 0; i < times; ++i) out += text;
+    return out;
+  };
+  const std::string problem =
+      ": lists, tables or the parts of a key nest more than 32 deep; allowed: up to that";
+  for (const std::string& text :
+       {repeated("a.", 20000) + "b = 1", "[" + repeated("a.", 20000) + "b]",
+        "a = " + repeated("[", 20000), "a = " + repeated("{a=", 20000),
+        repeated("\"a\" . ", 33) + "b = 1"}) {
+    ConfigSource source;
+    CHECK_THROWS_WITH(source.AddText("# [[[[\nc = '[[['\n" + text, "f.toml"), "f.toml:3" + problem);
+    CHECK_THROWS_AS(source.AddText(text, "f.toml"), Error);
+  }
+  ConfigSource source;
+  CHECK_THROWS_WITH(source.AddOverride(repeated("a.", 32) + "b=1"),
+                    Catch::Matchers::Contains(problem));
+  CHECK_THROWS_WITH(source.AddOverride("a=" + repeated("[", 33)),
+                    Catch::Matchers::Contains(problem));
+  // Brackets and dots within texts and comments nest nothing, whatever quotes are among them.
+  const std::string many = repeated("[.", 100);
+  source.AddText("a = \"" + many + "\\\"" + many + "\" # " + many + "\nb = \"\"\"\n" + many +
+                     "\"\"" + many + "\"\"\"\"\"\nc = '" + many + "\\'\nd = '''" + many + "'" +
+                     many + "''''\ne = \"\"\n" + repeated("f = 0.5\n", 1),
+                 "f.toml");
+  source.AddText(repeated("[[x]]\n", 100) + "g = [" + repeated("[1.5], ", 100) + "]\n", "g.toml");
+}
+
+TEST_CASE("the name of a file or part has no control characters", "[base]") {
+  ConfigSource source;
+  source.AddText("name = '''a\nb'''", "f.toml");
+  std::string name;
+  const auto visit = [&](ConfigVisitor& v) { v.NameOrFile("name", "", name); };
+  CHECK_THROWS_WITH(source.Read(visit),
+                    "f.toml:1:8: name: is \"a\\nb\"; allowed: texts without control characters");
+  ConfigSource typed;
+  typed.AddOverride("name=a\x1b[31m");
+  CHECK_THROWS_WITH(typed.Read(visit), Catch::Matchers::Contains("\\u001b[31m"));
+}
+
 }  // namespace tubetwin

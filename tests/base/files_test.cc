@@ -180,4 +180,62 @@ TEST_CASE("a fingerprint is the published FNV-1a of the text") {
   CHECK(Fingerprint("foobar") == "85944171f73967e8");
 }
 
+TEST_CASE("what is no regular file is missing input, at once") {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "pipe";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  for (const std::string& path : {pipe, std::string("/dev/zero")}) {
+    CHECK_THROWS_WITH(ReadFile(path), path +
+                                          ": is a device, pipe or socket; the name of a file is "
+                                          "needed");
+    CHECK(KindOf([&] { ReadFile(path); }) == ErrorKind::kMissing);
+  }
+}
+
+TEST_CASE("a name that no file can have is told as such, reading and writing") {
+  const TemporaryFolder folder;
+  const std::string name = folder / std::string(256, 'n');
+  CHECK_THROWS_WITH(ReadFile(name),
+                    Catch::Matchers::Contains("the name is too long; allowed: 255"));
+  CHECK(KindOf([&] { ReadFile(name); }) == ErrorKind::kMissing);
+  CHECK_THROWS_WITH(WriteFileAtomically(name, "x"),
+                    Catch::Matchers::Contains("the name is too long; allowed: 255"));
+  CHECK(KindOf([&] { WriteFileAtomically(name, "x"); }) == ErrorKind::kCannotCreate);
+  CHECK(KindOf([&] { MakeFolder(name); }) == ErrorKind::kCannotCreate);
+}
+
+TEST_CASE("a file above what is allowed is refused before it takes memory") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "sparse";
+  std::ofstream(path) << "x";
+  fs::resize_file(path, std::uintmax_t{1} << 40);
+  CHECK_THROWS_WITH(ReadFile(path),
+                    path +
+                        ": holds more than 1073741824 bytes; allowed: up to that for a file of "
+                        "this kind");
+  CHECK(KindOf([&] { ReadFile(path); }) == ErrorKind::kBadData);
+  fs::resize_file(path, 3);
+  CHECK(ReadFile(path, 3).size() == 3);
+  CHECK_THROWS_WITH(ReadFile(path, 2), Catch::Matchers::Contains("holds more than 2 bytes"));
+}
+
+TEST_CASE("lines come one by one, and the last says whether its break is there") {
+  const TemporaryFolder folder;
+  const std::string path = folder / "lines", longest(100000, 'a');
+  std::vector<std::pair<std::string, bool>> lines;
+  const auto read = [&](const std::string& content, std::uint64_t most) {
+    lines.clear();
+    WriteFileAtomically(path, content);
+    ForEachLine(path, most,
+                [&](const std::string& line, bool whole) { lines.emplace_back(line, whole); });
+  };
+  read("a\n\n" + longest + "\nb", longest.size());
+  CHECK(lines == std::vector<std::pair<std::string, bool>>{
+                     {"a", true}, {"", true}, {longest, true}, {"b", false}});
+  read("", 1);
+  CHECK(lines.empty());
+  CHECK_THROWS_WITH(read("a\n" + longest + "\n", longest.size() - 1),
+                    Catch::Matchers::Contains(path + ":2: holds more than 99999 bytes"));
+}
+
 }  // namespace tubetwin

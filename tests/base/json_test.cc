@@ -4,6 +4,7 @@
 
 #include "models/base/error.h"
 #include "models/base/files.h"
+#include "models/base/json_text.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 
@@ -88,6 +89,51 @@ TEST_CASE("a pose survives JSON and a quaternion that is none is refused") {
   const Json bad = {{"p_m", {0, 0, 0}}, {"q_wxyz", {1, 1, 0, 0}}};
   CHECK_THAT(ErrorOf([&] { TransformFromJson(JsonView(bad, "f")); }),
              Catch::StartsWith("f: q_wxyz: is no unit quaternion"));
+}
+
+TEST_CASE("JSON nested deeper than any file of ours is refused before it is parsed") {
+  const auto nested = [](int deep) {
+    return std::string(static_cast<std::size_t>(deep), '[') +
+           std::string(static_cast<std::size_t>(deep), ']');
+  };
+  CHECK(ParseJson(nested(kDeepestJson), "f.json").is_array());
+  CHECK(ParseJson("{\"a\": \"" + nested(1000) + "\\\"[\"}", "f.json").is_object());
+  for (const int deep : {kDeepestJson + 1, 1000000}) {
+    CHECK_THROWS_WITH(
+        ParseJson(nested(deep), "f.json"),
+        "f.json: byte 65: lists and objects nest more than 64 deep; allowed: up to that");
+  }
+  std::string objects;
+  for (int i = 0; i < 100000; ++i) objects += "{\"a\":";
+  CHECK_THROWS_WITH(ParseJson(objects, "f.json"), Catch::Matchers::Contains("byte 321: lists"));
+}
+
+TEST_CASE("whole numbers, lines and poses outside of their range are refused by name") {
+  const Json json = ParseJson(
+      R"({"n": 4294967296, "line": [[0, 0, 0], [1e300, 0, 0]],
+          "pose": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.5, 0, 0, 1],
+          "skewed": [1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 0.5, 0, 0, 1],
+          "mirrored": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0.5, 0, 0, 1]})",
+      "f.json");
+  const JsonView view(json, "f.json");
+  CHECK(IntegerIn(view.Field("pose").Item(0), 0, 7) == 1);
+  CHECK_THROWS_WITH(IntegerIn(view.Field("n"), -1, 7),
+                    "f.json: n: is 4294967296, allowed are -1 to 7");
+  CHECK_THROWS_WITH(CountFromJson(view.Field("n")),
+                    "f.json: n: is 4294967296, allowed are 0 to 2147483647");
+  CHECK_THROWS_WITH(view.Field("line").AsPolyline(),
+                    "f.json: line[1][0]: is 1e+300, allowed are -100 to 100");
+  CHECK(TransformOfColumns(view.Field("pose")).translation().x() == 0.5);
+  for (const char* name : {"skewed", "mirrored", "line"}) {
+    CHECK_THROWS_AS(TransformOfColumns(view.Field(name)), Error);
+  }
+}
+
+TEST_CASE("texts of a file stay one line in messages, without control characters") {
+  const Json json = ParseJson(R"({"a": "x\n\u001b[2Jy"})", "f.json");
+  CHECK_THROWS_WITH(
+      JsonView(json, "f.json").Field("a").Fail("is '" + json["a"].get<std::string>() + "'"),
+      "f.json: a: is 'x\\x0A\\x1B[2Jy'");
 }
 
 }  // namespace tubetwin

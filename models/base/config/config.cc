@@ -22,9 +22,11 @@ using config_internal::Entry;
 using config_internal::Node;
 using config_internal::Quoted;
 
+constexpr std::uint64_t kMaxTomlBytes = std::uint64_t{4} << 20;
+
 [[noreturn]] void Fail(const std::string& place, const std::string& path,
                        const std::string& problem) {
-  throw Error(ErrorKind::kConfig, place + ": " + path + ": " + problem);
+  throw Error(ErrorKind::kConfig, place + ": " + Printable(path) + ": " + problem);
 }
 
 /// Full paths of every entry whose last part is `key`.
@@ -90,6 +92,19 @@ std::string ReadText(const Node& node, const std::string& path) {
   if (const auto* text = std::get_if<std::string>(&node.value)) return *text;
   if (node.from_override) return node.raw;  // --set part=123: the field decides that it is a text.
   Fail(node.place, path, "a text is needed, found " + Describe(node));
+}
+
+/// The name of a file or of what stands in one: none needs a line break or another control
+/// character, and reports, tables and messages show it.
+std::string ReadName(const Node& node, const std::string& path) {
+  std::string name = ReadText(node, path);
+  const bool control = std::any_of(name.begin(), name.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+  });
+  if (control) {
+    Fail(node.place, path, "is " + Quoted(name) + "; allowed: texts without control characters");
+  }
+  return name;
 }
 
 const std::vector<Node>& ReadList(const Node& node, const std::string& path,
@@ -185,12 +200,12 @@ class Reader : public ConfigVisitor {
     Field(key, doc, value, none ? 0 : count, allowed);
   }
   void File(const char* key, const char*, std::string& value) override {
-    if (const Node* node = Get(key)) value = FileOf(*node, ReadText(*node, Path(key)));
+    if (const Node* node = Get(key)) value = FileOf(*node, ReadName(*node, Path(key)));
   }
   void NameOrFile(const char* key, const char*, std::string& value) override {
     const Node* node = Get(key);
     if (node == nullptr) return;
-    value = ReadText(*node, Path(key));
+    value = ReadName(*node, Path(key));
     if (value.ends_with(".toml")) value = FileOf(*node, value);
   }
   void Files(const char* key, const char* doc, std::vector<std::string>& value) override {
@@ -226,7 +241,7 @@ ConfigSource& ConfigSource::operator=(ConfigSource&&) noexcept = default;
 
 void ConfigSource::AddFile(const std::string& path) {
   Merge(impl_->layers,
-        config_internal::ParseLayer(ReadFile(path), path,
+        config_internal::ParseLayer(ReadFile(path, kMaxTomlBytes), path,
                                     std::filesystem::path(path).parent_path().string()));
 }
 

@@ -5,6 +5,7 @@
 #define TOML_ENABLE_FORMATTERS 0
 #include <toml++/toml.h>
 
+#include "models/base/config/nesting.h"
 #include "models/base/error.h"
 #include "models/base/json.h"
 #include "models/base/text.h"
@@ -14,6 +15,13 @@ namespace {
 
 std::string Place(const std::string& file, const toml::source_region& region) {
   return file + ":" + std::to_string(region.begin.line) + ":" + std::to_string(region.begin.column);
+}
+
+constexpr std::size_t kShown = 40;        // Errors stay one line even for a pasted file.
+constexpr std::size_t kShownPlace = 200;  // Long enough for a path.
+
+std::string Shown(const std::string& text) {
+  return text.size() > kShownPlace ? text.substr(0, kShownPlace) + "..." : text;
 }
 
 Node FromToml(const toml::node& in, const std::string& file);
@@ -51,8 +59,14 @@ Node FromToml(const toml::node& in, const std::string& file) {
   return out;
 }
 
+std::string TooDeep(const std::string& place) {
+  return place + ": lists, tables or the parts of a key nest more than " +
+         std::to_string(kDeepestNesting) + " deep; allowed: up to that";
+}
+
 /// The value of an override: TOML if it is one value, else the text as typed.
-Node OverrideValue(const std::string& raw) {
+Node OverrideValue(const std::string& raw, const std::string& place) {
+  if (LineOfDeepNesting(raw)) throw Error(ErrorKind::kConfig, TooDeep(place));
   try {
     const toml::table parsed = toml::parse("v = " + raw);
     if (parsed.size() == 1) {
@@ -95,6 +109,10 @@ const Node* Find(const Node::Table& table, const std::string& key) {
 }
 
 void Merge(Node::Table& below, Node::Table top) {
+  if (below.empty()) {
+    below = std::move(top);
+    return;
+  }
   for (auto& [key, node] : top) {
     Node* old = const_cast<Node*>(Find(below, key));
     if (old == nullptr) {
@@ -110,6 +128,9 @@ void Merge(Node::Table& below, Node::Table top) {
 
 Node::Table ParseLayer(const std::string& toml, const std::string& name,
                        const std::string& folder) {
+  if (const auto line = LineOfDeepNesting(toml)) {
+    throw Error(ErrorKind::kConfig, TooDeep(name + ":" + std::to_string(*line)));
+  }
   try {
     Node::Table table = TableFromToml(toml::parse(toml, name), name);
     for (auto& [key, node] : table) SetFolder(node, folder);
@@ -121,7 +142,7 @@ Node::Table ParseLayer(const std::string& toml, const std::string& name,
 }
 
 Node::Table ParseOverride(const std::string& text) {
-  const std::string place = "--set " + text;
+  const std::string place = "--set " + Shown(text);
   const std::size_t equals = text.find('=');
   const auto trim = [](const std::string& s) {
     const std::size_t first = s.find_first_not_of(" \t");
@@ -140,7 +161,10 @@ Node::Table ParseOverride(const std::string& text) {
                                        ": an override is written KEY=VALUE, for example "
                                        "planner.exclude_free=true");
   }
-  Node node = OverrideValue(trim(text.substr(equals + 1)));
+  if (keys.size() > static_cast<std::size_t>(kDeepestNesting)) {
+    throw Error(ErrorKind::kConfig, TooDeep(place));
+  }
+  Node node = OverrideValue(trim(text.substr(equals + 1)), place);
   SetPlace(node, place);
   node.raw = trim(text.substr(equals + 1));
   node.from_override = true;
@@ -158,7 +182,6 @@ Node::Table ParseOverride(const std::string& text) {
 }
 
 std::string Quoted(const std::string& text) {
-  constexpr std::size_t kShown = 40;  // Errors stay one line even for a pasted file.
   std::string shown =
       Json(text.substr(0, kShown)).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
   if (text.size() > kShown) shown += "...";

@@ -7,6 +7,7 @@
 #include "models/base/config/config.h"
 #include "models/base/config/config_entries.h"
 #include "models/base/config/config_layers.h"
+#include "models/base/config/nesting.h"
 #include "models/base/error.h"
 #include "models/base/text.h"
 
@@ -19,8 +20,11 @@ using config_internal::DescribeFields;
 using config_internal::Entry;
 using config_internal::Find;
 using config_internal::IsBareKey;
+using config_internal::kDeepestNesting;
 using config_internal::Merge;
 using config_internal::Node;
+
+constexpr std::size_t kMostExpanded = 1000;  // Variants of a grid.
 
 [[noreturn]] void Fail(const Node& node, const std::string& path, const std::string& problem) {
   throw Error(ErrorKind::kConfig, node.key_place + ": " + path + ": " + problem);
@@ -144,7 +148,8 @@ ConfigSource ConfigSource::TakeTable(const std::string& key) {
   if (table == nullptr) Fail(node, key, "a table {a.b = value} is needed, found " + Describe(node));
   for (auto& [name, below] : *table) {
     const std::vector<std::string> keys = SplitAtDots(name);
-    if (keys.empty() || !std::all_of(keys.begin(), keys.end(), IsBareKey)) {
+    if (keys.empty() || keys.size() > kDeepestNesting ||
+        !std::all_of(keys.begin(), keys.end(), IsBareKey)) {
       Fail(below, key, "'" + name + "' is no key; keys are written like planner.exclude_free");
     }
     Merge(out.impl_->layers, Wrapped(keys, std::move(below)));
@@ -171,6 +176,16 @@ std::vector<ConfigSource> ConfigSource::ExpandLists(
     const std::function<void(ConfigVisitor&)>& visit) const {
   std::vector<Axis> axes;
   FindAxes(impl_->layers, DescribeFields(visit), "", axes);
+  std::size_t size = 1;
+  for (const Axis& axis : axes) {
+    const auto& values = std::get<std::vector<Node>>(axis.list->value);
+    size *= std::min(values.size(), kMostExpanded + 1);  // No product of these two overflows.
+    if (size <= kMostExpanded) continue;
+    Fail(*axis.list, Join(axis.keys, "."),
+         "its " + std::to_string(values.size()) + " values make a grid of more than " +
+             std::to_string(kMostExpanded) + " variants with the lists before it; allowed: up to " +
+             "that");
+  }
   std::vector<ConfigSource> out(1);
   out.front().impl_->layers = impl_->layers;
   for (const Axis& axis : axes) {
