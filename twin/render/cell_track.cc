@@ -7,6 +7,7 @@
 #include "models/base/error.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/engine/mj_handles.h"
+#include "twin/render/cell_xml.h"
 
 namespace tubetwin {
 namespace {
@@ -15,19 +16,9 @@ namespace {
 constexpr double kStill_m = 3e-4, kStill_rad = 3e-3;
 
 MjModel CompileCell(const Recording& recording) {
-  InitEngine();
-  char error[512] = "";
-  mjSpec* parsed = nullptr;
-  GuardEngine([&] {
-    parsed = mj_parseXMLString(recording.cell_xml.c_str(), nullptr, error, sizeof error);
-  });
-  const MjSpec spec(parsed);
-  if (spec == nullptr) {
-    throw Error(ErrorKind::kBadData,
-                std::string("recording: the cell's XML does not parse: ") + error);
-  }
+  const MjSpec spec = ParseCellXml(recording.cell_xml, recording.source);
   try {
-    return Compile(*spec, "recording");
+    return Compile(*spec, recording.source);
   } catch (const Error& problem) {
     throw Error(ErrorKind::kBadData, problem.what());
   }
@@ -129,8 +120,8 @@ CellTrack TrackOf(const Recording& recording, int from, int to, int stride) {
   for (int frame = from; frame < to; frame += stride, ++track.samples) {
     const std::vector<float>& qpos = recording.frames[frame].qpos;
     if (qpos.size() != static_cast<std::size_t>(model->nq)) {
-      throw Error(ErrorKind::kBadData, "recording: frame " + std::to_string(frame) + " has " +
-                                           std::to_string(qpos.size()) +
+      throw Error(ErrorKind::kBadData, recording.source + ": frame " + std::to_string(frame) +
+                                           " has " + std::to_string(qpos.size()) +
                                            " coordinates, its cell has " +
                                            std::to_string(model->nq));
     }

@@ -31,11 +31,11 @@ class FrameDrawer {
   FrameDrawer(const Recording& recording, int workers, StageQuality quality)
       : recording_(recording),
         quality_(quality),
-        model_(CompileStage(recording, "recording", quality)) {
+        model_(CompileStage(recording, recording.source, quality)) {
     const std::size_t nq = static_cast<std::size_t>(model_->nq);
     for (const Recording::Frame& frame : recording.frames) {
       if (frame.qpos.size() == nq) continue;
-      throw Error(ErrorKind::kBadData, "recording: its frames have " +
+      throw Error(ErrorKind::kBadData, recording.source + ": its frames have " +
                                            std::to_string(frame.qpos.size()) +
                                            " coordinates, its cell has " + std::to_string(nq));
     }

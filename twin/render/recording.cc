@@ -1,15 +1,18 @@
 #include "twin/render/recording.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
 #include <zstd.h>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 
 namespace tubetwin {
 namespace {
@@ -17,7 +20,10 @@ namespace {
 // Content before compression: the JSON head, a zero byte, then per frame force (float), overlay
 // and caption (int32), qpos (nq floats), little-endian.
 constexpr std::size_t kFrameHead = 12;
-constexpr std::size_t kMaxContent = std::size_t{4} << 30;  // 24 hours of a large cell.
+constexpr std::size_t kMaxPacked = std::size_t{512} << 20, kMaxHead = std::size_t{64} << 20;
+constexpr int kMaxCoordinates = 20000;                               // 40 hoses have 1,300.
+constexpr int kMaxFrames = 24 * 3600 * Recording::kFramesPerSecond;  // A day.
+constexpr std::size_t kMaxFrameBytes = std::size_t{512} << 20;       // An hour of 40 hoses.
 constexpr int kCompression = 6;
 
 Json VisualToJson(const Recording::Visual& visual) {
@@ -92,38 +98,77 @@ Json Head(const Recording& recording, std::size_t nq) {
           {"cell_xml", recording.cell_xml}};
 }
 
-std::string Decompress(const std::string& packed, const std::string& path) {
-  const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(ZSTD_createDStream(),
-                                                                          ZSTD_freeDStream);
-  TT_CHECK(stream != nullptr);
-  std::string content;
-  std::vector<char> block(ZSTD_DStreamOutSize());
-  ZSTD_inBuffer in = {packed.data(), packed.size(), 0};
-  std::size_t left = 1;
-  while (left != 0) {
-    ZSTD_outBuffer out = {block.data(), block.size(), 0};
-    left = ZSTD_decompressStream(stream.get(), &out, &in);
-    if (ZSTD_isError(left)) {
-      throw Error(ErrorKind::kBadData, path + ": byte " + std::to_string(in.pos) +
-                                           ": no recording: " + ZSTD_getErrorName(left));
+/// Unpacks a recording piece by piece: what it holds is judged before it takes memory.
+class Unpacker {
+ public:
+  Unpacker(std::string packed, std::string path)
+      : packed_(std::move(packed)),
+        path_(std::move(path)),
+        stream_(ZSTD_createDStream(), ZSTD_freeDStream),
+        block_(ZSTD_DStreamOutSize()) {
+    TT_CHECK(stream_ != nullptr);
+    in_ = {packed_.data(), packed_.size(), 0};
+  }
+
+  /// What comes before the next zero byte, which is passed.
+  std::string UpToZero(std::size_t most) {
+    std::string out;
+    while (Fill()) {
+      const std::string_view here(block_.data() + at_, end_ - at_);
+      const std::size_t zero = here.find('\0');
+      out += here.substr(0, zero);
+      at_ += std::min(zero, here.size() - 1) + 1;
+      if (out.size() > most) Fail("the head is longer than " + std::to_string(most) + " bytes");
+      if (zero != std::string_view::npos) return out;
     }
-    content.append(block.data(), out.pos);
-    if (content.size() > kMaxContent) {
-      throw Error(ErrorKind::kBadData, path + ": holds more than the 4 GiB that are allowed");
-    }
-    if (left != 0 && in.pos == in.size && out.pos < out.size) {
-      throw Error(ErrorKind::kBadData,
-                  path + ": byte " + std::to_string(in.size) + ": the recording is cut short");
+    Fail("no recording: nothing ends the head");
+  }
+
+  /// Exactly so many bytes.
+  void Read(char* to, std::size_t size) {
+    while (size > 0) {
+      if (!Fill()) Fail("ends before its last frame");
+      const std::size_t step = std::min(size, end_ - at_);
+      std::memcpy(to, block_.data() + at_, step);
+      at_ += step;
+      to += step;
+      size -= step;
     }
   }
-  return content;
-}
 
-std::size_t AsCount(const JsonView& view) {
-  const std::int64_t value = view.AsInteger();
-  if (value < 0) view.Fail("is " + std::to_string(value) + ", allowed are 0 and more");
-  return static_cast<std::size_t>(value);
-}
+  void RequireEnd() {
+    if (Fill()) Fail("goes on after its last frame");
+  }
+
+ private:
+  [[noreturn]] void Fail(const std::string& problem) const {
+    throw Error(ErrorKind::kBadData, path_ + ": " + problem);
+  }
+
+  /// Whether bytes lie ready; else all were taken.
+  bool Fill() {
+    while (at_ == end_) {
+      if (left_ == 0) return false;
+      ZSTD_outBuffer out = {block_.data(), block_.size(), 0};
+      left_ = ZSTD_decompressStream(stream_.get(), &out, &in_);
+      if (ZSTD_isError(left_)) {
+        Fail("byte " + std::to_string(in_.pos) + ": no recording: " + ZSTD_getErrorName(left_));
+      }
+      if (left_ != 0 && in_.pos == in_.size && out.pos < out.size) {
+        Fail("byte " + std::to_string(in_.size) + ": the recording is cut short");
+      }
+      at_ = 0;
+      end_ = out.pos;
+    }
+    return true;
+  }
+
+  std::string packed_, path_;
+  std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream_;
+  std::vector<char> block_;
+  ZSTD_inBuffer in_{};
+  std::size_t at_ = 0, end_ = 0, left_ = 1;
+};
 
 Recording::Overlay ReadOverlay(const JsonView& view) {
   Recording::Overlay overlay;
@@ -171,6 +216,25 @@ void CheckFrame(const Recording& recording, const Recording::Frame& frame, const
   }
 }
 
+Recording ReadHead(const JsonView& head) {
+  Recording recording;
+  recording.cell_xml = head.Field("cell_xml").AsString();
+  recording.bin = BinFromJson(head.Field("bin"));
+  if (const auto visuals = head.Optional("visuals")) {
+    for (std::size_t i = 0; i < visuals->Size(); ++i) {
+      recording.visuals.push_back(ReadVisual(visuals->Item(i)));
+    }
+  }
+  const JsonView captions = head.Field("captions"), overlays = head.Field("overlays");
+  for (std::size_t i = 0; i < captions.Size(); ++i) {
+    recording.captions.push_back(captions.Item(i).AsString());
+  }
+  for (std::size_t i = 0; i < overlays.Size(); ++i) {
+    recording.overlays.push_back(ReadOverlay(overlays.Item(i)));
+  }
+  return recording;
+}
+
 }  // namespace
 
 void WriteRecording(const Recording& recording, const std::string& path) {
@@ -198,51 +262,36 @@ void WriteRecording(const Recording& recording, const std::string& path) {
 }
 
 Recording ReadRecording(const std::string& path) {
-  const std::string content = Decompress(ReadFile(path), path);
-  const std::size_t head_size = content.find('\0');
-  Json json;
-  if (head_size != std::string::npos) {
-    json = Json::parse(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(head_size),
-                       nullptr, /*allow_exceptions=*/false);
-  }
+  Unpacker content(ReadFile(path, kMaxPacked), path);
+  const Json json = ParseJson(content.UpToZero(kMaxHead), path + ": head");
   if (!json.is_object()) throw Error(ErrorKind::kBadData, path + ": the head is no JSON object");
   const JsonView head(json, path);
   RequireSchema(head, "recording");
-  Recording recording;
-  recording.cell_xml = head.Field("cell_xml").AsString();
-  recording.bin = BinFromJson(head.Field("bin"));
-  if (const auto visuals = head.Optional("visuals")) {
-    for (std::size_t i = 0; i < visuals->Size(); ++i) {
-      recording.visuals.push_back(ReadVisual(visuals->Item(i)));
-    }
-  }
-  const JsonView captions = head.Field("captions"), overlays = head.Field("overlays");
-  for (std::size_t i = 0; i < captions.Size(); ++i) {
-    recording.captions.push_back(captions.Item(i).AsString());
-  }
-  for (std::size_t i = 0; i < overlays.Size(); ++i) {
-    recording.overlays.push_back(ReadOverlay(overlays.Item(i)));
-  }
-  const std::size_t nq = AsCount(head.Field("nq")), frames = AsCount(head.Field("frames"));
-  const std::size_t left = content.size() - head_size - 1;
-  // Both are compared with what is there before they are multiplied.
-  if (nq > left || frames > left || left != frames * (kFrameHead + 4 * nq)) {
+  Recording recording = ReadHead(head);
+  recording.source = path;
+  const int nq = IntegerIn(head.Field("nq"), 0, kMaxCoordinates);
+  const int frames = IntegerIn(head.Field("frames"), 0, nq > 0 ? kMaxFrames : 0);
+  const std::size_t frame_bytes = kFrameHead + 4 * static_cast<std::size_t>(nq);
+  if (static_cast<std::size_t>(frames) * frame_bytes > kMaxFrameBytes) {
     throw Error(ErrorKind::kBadData, path + ": " + std::to_string(frames) + " frames of " +
-                                         std::to_string(nq) + " coordinates do not fill the " +
-                                         std::to_string(left) + " bytes that follow the head");
+                                         std::to_string(nq) + " coordinates take more than the " +
+                                         std::to_string(kMaxFrameBytes) +
+                                         " bytes that are allowed");
   }
   if (const auto ends = head.Optional("attempt_ends")) {
-    double before = 0.0;
+    int before = 0;
     for (std::size_t i = 0; i < ends->Size(); ++i) {
-      before = ends->Item(i).AsNumber(before, static_cast<double>(frames));
-      recording.attempt_ends.push_back(static_cast<int>(before));
+      before = IntegerIn(ends->Item(i), before, frames);
+      recording.attempt_ends.push_back(before);
     }
   }
-  const char* bytes = content.data() + head_size + 1;
-  for (std::size_t i = 0; i < frames; ++i, bytes += kFrameHead + 4 * nq) {
-    recording.frames.push_back(ReadFrame(bytes, nq));
+  std::vector<char> bytes(frame_bytes);
+  for (int i = 0; i < frames; ++i) {
+    content.Read(bytes.data(), bytes.size());
+    recording.frames.push_back(ReadFrame(bytes.data(), static_cast<std::size_t>(nq)));
     CheckFrame(recording, recording.frames.back(), path + ": frame " + std::to_string(i) + ": ");
   }
+  content.RequireEnd();
   return recording;
 }
 

@@ -36,7 +36,8 @@ struct Recording {
     std::vector<std::string> replaces;
     Mesh mesh;  ///< In the body's frame.
   };
-  std::string cell_xml;  ///< The compiled cell, as in the result folder.
+  std::string source = "recording";  ///< In messages: the file that it was read from.
+  std::string cell_xml;              ///< The compiled cell, as in the result folder.
   Bin bin;
   std::vector<Visual> visuals;
   std::vector<Overlay> overlays;

@@ -7,6 +7,7 @@
 #include "scenes/bin_body.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/tube_body.h"
+#include "twin/render/cell_xml.h"
 #include "twin/render/gl/scene_renderer.h"
 
 namespace tubetwin {
@@ -176,16 +177,7 @@ void DressStage(mjSpec& spec, const Vector3& centre_B, double reach_m, StageQual
 }
 
 MjModel CompileStage(const Recording& recording, const std::string& source, StageQuality quality) {
-  InitEngine();
-  char error[512] = "";
-  mjSpec* parsed = nullptr;
-  GuardEngine([&] {
-    parsed = mj_parseXMLString(recording.cell_xml.c_str(), nullptr, error, sizeof error);
-  });
-  const MjSpec spec(parsed);
-  if (spec == nullptr) {
-    throw Error(ErrorKind::kBadData, source + ": the cell's XML does not parse: " + error);
-  }
+  const MjSpec spec = ParseCellXml(recording.cell_xml, source);
   int number = 0;
   for (const Recording::Visual& visual : recording.visuals) {
     AddVisual(*spec, visual, number++, source);
