@@ -1,10 +1,10 @@
 #include "hw_bridge/recording/recording_header.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "models/base/error.h"
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 
 namespace tubetwin {
 namespace {
@@ -13,14 +13,6 @@ constexpr const char* kSchema = "tubetwin/cell_recording/1";
 
 Json PoseJson(const RigidTransform& X_AB) {
   return std::vector<double>(X_AB.matrix().data(), X_AB.matrix().data() + 16);
-}
-
-RigidTransform PoseFromJson(const JsonView& view) {
-  const std::vector<double> numbers = view.AsNumbers();
-  if (numbers.size() != 16) view.Fail("sixteen numbers of a pose, by columns, are needed");
-  RigidTransform X_AB;
-  std::copy(numbers.begin(), numbers.end(), X_AB.matrix().data());
-  return X_AB;
 }
 
 /// What configuration and calibration may change of a model's layout, and what recordings had
@@ -34,11 +26,11 @@ Json LayoutJson(const CellLayout& layout) {
 }
 
 void ReadLayout(const JsonView& view, CellLayout& layout) {
-  if (const auto X_BS = view.Optional("X_BS")) layout.X_BS = PoseFromJson(*X_BS);
-  layout.X_FK = PoseFromJson(view.Field("X_FK"));
-  layout.X_FE = PoseFromJson(view.Field("X_FE"));
-  layout.X_FS = PoseFromJson(view.Field("X_FS"));
-  layout.X_BT = PoseFromJson(view.Field("X_BT"));
+  if (const auto X_BS = view.Optional("X_BS")) layout.X_BS = TransformOfColumns(*X_BS);
+  layout.X_FK = TransformOfColumns(view.Field("X_FK"));
+  layout.X_FE = TransformOfColumns(view.Field("X_FE"));
+  layout.X_FS = TransformOfColumns(view.Field("X_FS"));
+  layout.X_BT = TransformOfColumns(view.Field("X_BT"));
   layout.tray_size_m = view.Field("tray_size_m").AsNumber();
   layout.tray_zone_m = view.Field("tray_zone_m").AsNumber();
   layout.slot_pitch_m = view.Field("slot_pitch_m").AsNumber();
@@ -71,12 +63,9 @@ CellModel ModelFromJson(const std::optional<JsonView>& view) {
                         FileFromJson(view->Field("scanner"))});
 }
 
-/// A text that is JSON. The nlohmann exception would not name the source.
 Json Parsed(const std::string& text, const std::string& source) {
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object()) {
-    throw Error(ErrorKind::kBadData, source + ": no JSON object");
-  }
+  Json json = ParseJson(text, source);
+  if (!json.is_object()) throw Error(ErrorKind::kBadData, source + ": no JSON object");
   return json;
 }
 
@@ -115,7 +104,7 @@ CellRecordingHeader HeaderFromText(const std::string& text, const std::string& s
   const JsonView size = bin.Field("size_m");
   if (size.Size() != 3) size.Fail("three numbers are needed");
   for (std::size_t i = 0; i < 3; ++i) header.bin.size_m[i] = size.Item(i).AsNumber(0.01, 3.0);
-  header.bin.X_BN = PoseFromJson(bin.Field("X_BN"));
+  header.bin.X_BN = TransformOfColumns(bin.Field("X_BN"));
   header.part = PartFromJson(view.Field("part"));
   if (const auto held = view.Optional("held")) header.held = held->AsString();
   header.config_toml = view.Field("config_toml").AsString();

@@ -128,12 +128,14 @@ void Replace(const std::string& path, Kept kept,
   const std::string folder = FolderOf(path);
   MakeFolder(folder);
   struct stat there = {};
-  if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode)) {
+  if (::stat(path.c_str(), &there) == 0) {
     // The rename would put a file in the device's place, for everybody.
-    throw Error(ErrorKind::kCannotCreate,
-                path + (S_ISDIR(there.st_mode)
-                            ? ": is a folder, a file name is needed"
-                            : ": is a device, pipe or socket; the name of a file is needed"));
+    if (S_ISDIR(there.st_mode)) {
+      throw Error(ErrorKind::kCannotCreate, path + ": is a folder, a file name is needed");
+    }
+    if (!S_ISREG(there.st_mode)) throw Error(ErrorKind::kCannotCreate, path + kNoRegularFile);
+  } else if (errno == ENAMETOOLONG) {
+    throw Error(ErrorKind::kCannotCreate, NameTooLong(path));
   }
   OutputFile out = OutputFile::Temporary(folder, EndingOf(path), path);
   struct Cleanup {
@@ -229,6 +231,7 @@ void MakeFolder(const std::string& path) {
   fs::create_directories(path, code);
   if (std::error_code ignored; !fs::is_directory(path, ignored)) {
     const int error = code ? code.value() : ENOTDIR;
+    if (error == ENAMETOOLONG) throw Error(ErrorKind::kCannotCreate, NameTooLong(path));
     throw Error(KindOfFailedCreation(error),
                 path + ": cannot be made a folder: " +
                     (error == ENOTDIR ? "a file is there" : std::strerror(error)));

@@ -5,6 +5,8 @@
 
 #include "models/base/error.h"
 #include "models/base/json.h"
+#include "models/base/json_text.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 
@@ -36,6 +38,13 @@ const char* ToString(BinContent content) {
 
 namespace {
 
+// What a tubes.json may hold; of a pile's tubes the same is asked.
+constexpr double kFarthest_m = 3.0;  // From the bin's floor centre, any coordinate.
+constexpr double kClosestNodes_m = 1e-6, kLongest_m = 10.0;
+constexpr double kThinnest_m = 0.001, kThickest_m = 0.1;
+constexpr std::size_t kMaxTubes = 200, kMaxNodes = 2000, kMaxCrossings = 20000;
+constexpr std::size_t kMaxPoints = 1000000, kMaxFloorCells = 2000;
+
 BinContent ContentFromJson(const JsonView& view) {
   const std::string text = view.AsString();
   for (const BinContent c : {BinContent::kEmpty, BinContent::kNotEmpty, BinContent::kUnseen}) {
@@ -60,16 +69,25 @@ Json FloorToJson(const UnseenFloor& floor) {
               {"rows", rows}};
 }
 
+/// A list of at most `most`: whatever comes after it takes time for each.
+void RequireAtMost(const JsonView& list, std::size_t most) {
+  if (list.Size() <= most) return;
+  list.Fail("has " + std::to_string(list.Size()) + " entries, allowed are up to " +
+            std::to_string(most));
+}
+
 UnseenFloor FloorFromJson(const JsonView& view) {
   UnseenFloor floor;
   const std::vector<double> cell_m = view.Field("cell_m").AsNumbers();
   if (cell_m.size() != 2) view.Field("cell_m").Fail("two numbers are needed");
-  floor.cell_x_m = cell_m[0];
-  floor.cell_y_m = cell_m[1];
+  floor.cell_x_m = view.Field("cell_m").Item(0).AsNumber(0.0, kFarthest_m);
+  floor.cell_y_m = view.Field("cell_m").Item(1).AsNumber(0.0, kFarthest_m);
   const JsonView rows = view.Field("rows");
+  RequireAtMost(rows, kMaxFloorCells);
   floor.rows = static_cast<int>(rows.Size());
   for (std::size_t j = 0; j < rows.Size(); ++j) {
     const std::string row = rows.Item(j).AsString();
+    if (row.size() > kMaxFloorCells) rows.Item(j).Fail("is longer than 2000 characters");
     if (j == 0) floor.columns = static_cast<int>(row.size());
     if (static_cast<int>(row.size()) != floor.columns ||
         row.find_first_not_of("#.") != std::string::npos) {
@@ -90,10 +108,35 @@ TubeClass ClassFromJson(const JsonView& view) {
 
 std::vector<int> IdsFromJson(const JsonView& view) {
   std::vector<int> out;
-  for (std::size_t i = 0; i < view.Size(); ++i) {
-    out.push_back(static_cast<int>(view.Item(i).AsInteger()));
-  }
+  for (std::size_t i = 0; i < view.Size(); ++i) out.push_back(CountFromJson(view.Item(i)));
   return out;
+}
+
+std::vector<Vector3> PointsFromJson(const JsonView& view, std::size_t most) {
+  RequireAtMost(view, most);
+  std::vector<Vector3> points = view.AsPolyline();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      view.Item(i).Item(k).AsNumber(-kFarthest_m, kFarthest_m);
+    }
+  }
+  return points;
+}
+
+Polyline CenterlineFromJson(const JsonView& view) {
+  Polyline line = PointsFromJson(view, kMaxNodes);
+  if (line.size() < 2) view.Fail("two points are needed");
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    // Also of points that lie together, which have no direction.
+    if ((line[i] - line[i - 1]).norm() >= kClosestNodes_m) continue;
+    view.Item(i).Fail("is " + Number((line[i] - line[i - 1]).norm()) +
+                      " m from the point before, allowed are " + Number(kClosestNodes_m) +
+                      " m and more");
+  }
+  if (const double length_m = Length(line); length_m > kLongest_m) {
+    view.Fail("is " + Number(length_m) + " m long, allowed are up to " + Number(kLongest_m) + " m");
+  }
+  return line;
 }
 
 Json TubeToJson(const PerceivedTube& tube) {
@@ -117,11 +160,10 @@ Json TubeToJson(const PerceivedTube& tube) {
 
 PerceivedTube TubeFromJson(const JsonView& view) {
   PerceivedTube tube;
-  tube.id = static_cast<int>(view.Field("id").AsInteger());
-  tube.centerline_N = view.Field("centerline_m").AsPolyline();
-  if (tube.centerline_N.size() < 2) view.Field("centerline_m").Fail("two points are needed");
-  tube.radius_m = view.Field("radius_m").AsNumber(1e-4, 1.0);
-  tube.length_m = view.Field("length_m").AsNumber(0.0, 100.0);
+  tube.id = CountFromJson(view.Field("id"));
+  tube.centerline_N = CenterlineFromJson(view.Field("centerline_m"));
+  tube.radius_m = view.Field("radius_m").AsNumber(kThinnest_m, kThickest_m);
+  tube.length_m = view.Field("length_m").AsNumber(kClosestNodes_m, kLongest_m);
   tube.visible_fraction = view.Field("visible_fraction").AsNumber(0.0, 1.0);
   tube.confidence = view.Field("confidence").AsNumber(0.0, 1.0);
   tube.tube_class = ClassFromJson(view.Field("class"));
@@ -155,15 +197,16 @@ Json CrossingToJson(const Crossing& crossing) {
 
 Crossing CrossingFromJson(const JsonView& view) {
   Crossing crossing;
-  crossing.over = static_cast<int>(view.Field("over").AsInteger());
-  crossing.under = static_cast<int>(view.Field("under").AsInteger());
-  crossing.at_over_m = view.Field("at_over_m").AsNumber();
-  crossing.at_under_m = view.Field("at_under_m").AsNumber();
-  crossing.gap_m = view.Field("gap_m").AsNumber();
+  const auto along = [](const JsonView& field) { return field.AsNumber(-kLongest_m, kLongest_m); };
+  crossing.over = CountFromJson(view.Field("over"));
+  crossing.under = CountFromJson(view.Field("under"));
+  crossing.at_over_m = along(view.Field("at_over_m"));
+  crossing.at_under_m = along(view.Field("at_under_m"));
+  crossing.gap_m = along(view.Field("gap_m"));
   crossing.confidence = view.Field("confidence").AsNumber(0.0, 1.0);
   crossing.under_from_m = crossing.under_to_m = crossing.at_under_m;
-  if (const auto from = view.Optional("under_from_m")) crossing.under_from_m = from->AsNumber();
-  if (const auto to = view.Optional("under_to_m")) crossing.under_to_m = to->AsNumber();
+  if (const auto from = view.Optional("under_from_m")) crossing.under_from_m = along(*from);
+  if (const auto to = view.Optional("under_to_m")) crossing.under_to_m = along(*to);
   if (const auto visible = view.Optional("visible")) crossing.visible = visible->AsBool();
   return crossing;
 }
@@ -221,8 +264,10 @@ TubeScene TubeSceneFromJson(const JsonView& document) {
   if (frame != "bin") document.Field("frame").Fail("is '" + frame + "', 'bin' is needed");
   TubeScene scene;
   const JsonView tubes = document.Field("tubes");
+  RequireAtMost(tubes, kMaxTubes);
   for (std::size_t i = 0; i < tubes.Size(); ++i) scene.tubes.push_back(TubeFromJson(tubes.Item(i)));
   const JsonView crossings = document.Field("crossings");
+  RequireAtMost(crossings, kMaxCrossings);
   for (std::size_t i = 0; i < crossings.Size(); ++i) {
     scene.crossings.push_back(CrossingFromJson(crossings.Item(i)));
   }
@@ -244,7 +289,7 @@ TubeScene TubeSceneFromJson(const JsonView& document) {
   }
   document.Field("unexplained_points").AsNumber(0, 2e9);
   if (const auto points = document.Optional("unexplained_m")) {
-    scene.unexplained_N = points->AsPolyline();
+    scene.unexplained_N = PointsFromJson(*points, kMaxPoints);
   }
   scene.bin_content = scene.tubes.empty() ? BinContent::kUnseen : BinContent::kNotEmpty;
   if (const auto content = document.Optional("bin_content")) {

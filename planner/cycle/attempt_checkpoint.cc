@@ -4,21 +4,26 @@
 
 #include "models/base/error.h"
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 
 namespace tubetwin {
 namespace {
 
+// What a stored moment may say: far more than any cell's, far less than what would never end.
+constexpr double kLongest_s = 1e6, kFarthest_m = 10.0, kWidest_m = 1.0;
+constexpr double kFarthestTurn_rad = 20.0;
+constexpr double kLargestLoad = 1e4;  // N and N m.
+
+Vector3 LoadFromJson(const JsonView& view) {
+  for (std::size_t k = 0; k < view.Size(); ++k) {
+    view.Item(k).AsNumber(-kLargestLoad, kLargestLoad);
+  }
+  return view.AsVector3();
+}
+
 Json MatrixJson(const RigidTransform& X_AB) {
   // Sixteen numbers instead of a quaternion, whose conversion rounds.
   return std::vector<double>(X_AB.matrix().data(), X_AB.matrix().data() + 16);
-}
-
-RigidTransform MatrixFromJson(const JsonView& view) {
-  if (view.Size() != 16) view.Fail("sixteen numbers of a pose, by columns, are needed");
-  const std::vector<double> numbers = view.AsNumbers();
-  RigidTransform X_AB;
-  std::copy(numbers.begin(), numbers.end(), X_AB.matrix().data());
-  return X_AB;
 }
 
 Json DetectionJson(const Detection& detection) {
@@ -31,9 +36,9 @@ Json DetectionJson(const Detection& detection) {
 Detection DetectionFromJson(const JsonView& view) {
   Detection detection;
   detection.outcome = static_cast<HeldOutcome>(view.Field("outcome").AsNumber(0, 2));
-  detection.force_N = view.Field("force_N").AsNumber();
-  detection.torque_Nm = view.Field("torque_Nm").AsVector3();
-  detection.at_s = view.Field("at_s").AsNumber();
+  detection.force_N = view.Field("force_N").AsNumber(-kLargestLoad, kLargestLoad);
+  detection.torque_Nm = LoadFromJson(view.Field("torque_Nm"));
+  detection.at_s = view.Field("at_s").AsNumber(0.0, kLongest_s);
   return detection;
 }
 
@@ -52,19 +57,18 @@ Json PlanJson(const PickPlan& plan) {
 
 PickPlan PlanFromJson(const JsonView& view) {
   PickPlan plan;
-  plan.target = plan.motion.tube = plan.grasp.tube =
-      static_cast<int>(view.Field("target").AsInteger());
+  plan.target = plan.motion.tube = plan.grasp.tube = CountFromJson(view.Field("target"));
   plan.target_class = static_cast<TubeClass>(view.Field("class").AsNumber(0, 2));
   plan.motion.name = view.Field("motion").AsString();
   static_cast<ObjectPath&>(plan.motion) = ObjectPathFromJson(view);
-  plan.grasp.X_NG = MatrixFromJson(view.Field("X_NG"));
-  plan.grasp.at_m = view.Field("at_m").AsNumber();
-  plan.grasp.opening_m = view.Field("opening_m").AsNumber();
+  plan.grasp.X_NG = TransformOfColumns(view.Field("X_NG"));
+  plan.grasp.at_m = view.Field("at_m").AsNumber(0.0, kFarthest_m);
+  plan.grasp.opening_m = view.Field("opening_m").AsNumber(0.0, kWidest_m);
   plan.used_simulator = view.Field("used_simulator").AsBool();
   if (const auto prediction = view.Optional("prediction")) {
     plan.prediction = Prediction{prediction->Field("displacement_m").AsNumber(),
                                  prediction->Field("extra_probability").AsNumber(),
-                                 static_cast<int>(prediction->Field("samples").AsInteger())};
+                                 CountFromJson(prediction->Field("samples"))};
   }
   return plan;
 }
@@ -99,8 +103,8 @@ Json ToJson(const AttemptCheckpoint& state) {
 AttemptCheckpoint AttemptCheckpointFromJson(const JsonView& view) {
   AttemptCheckpoint state;
   AttemptReport& report = state.report;
-  report.attempt = static_cast<int>(view.Field("attempt").AsInteger());
-  report.tubes_in_bin = static_cast<int>(view.Field("tubes_in_bin").AsInteger());
+  report.attempt = CountFromJson(view.Field("attempt"));
+  report.tubes_in_bin = CountFromJson(view.Field("tubes_in_bin"));
   if (const auto nudges = view.Optional("nudges")) {
     for (std::size_t i = 0; i < nudges->Size(); ++i) {
       report.nudges.push_back(NudgeReportFromJson(nudges->Item(i)));
@@ -110,23 +114,26 @@ AttemptCheckpoint AttemptCheckpointFromJson(const JsonView& view) {
   report.first_weighing = DetectionFromJson(view.Field("first_weighing"));
   report.detection = DetectionFromJson(view.Field("detection"));
   const JsonView sim_s = view.Field("sim_s");
-  report.sim_s = {sim_s.Item(0).AsNumber(), sim_s.Item(1).AsNumber(), sim_s.Item(2).AsNumber(),
-                  sim_s.Item(3).AsNumber()};
+  const auto seconds = [&](std::size_t k) { return sim_s.Item(k).AsNumber(0.0, kLongest_s); };
+  report.sim_s = {seconds(0), seconds(1), seconds(2), seconds(3)};
   if (const auto phases_s = view.Optional("phases_s")) report.phases_s = PhasesFromJson(*phases_s);
   state.line_E = view.Field("line_E_m").AsPolyline();
   const JsonView reference = view.Field("reference_K");
-  state.reference_K = {reference.Field("force_N").AsVector3(),
-                       reference.Field("torque_Nm").AsVector3()};
-  state.attempt_began = TimeNs(view.Field("attempt_began_ns").AsInteger());
+  state.reference_K = {LoadFromJson(reference.Field("force_N")),
+                       LoadFromJson(reference.Field("torque_Nm"))};
+  const JsonView began = view.Field("attempt_began_ns");
+  began.AsNumber(0.0, 1e9 * kLongest_s);
+  state.attempt_began = TimeNs(began.AsInteger());
   const JsonView placed = view.Field("placed_T_m");
   for (std::size_t i = 0; i < placed.Size(); ++i) {
     state.placed_T.push_back(placed.Item(i).AsPolyline());
   }
   const JsonView q = view.Field("q");
   if (q.Size() != kNumJoints) q.Fail("one number for each of the 6 joints is needed");
-  const std::vector<double> numbers = q.AsNumbers();
-  std::copy(numbers.begin(), numbers.end(), state.q.begin());
-  state.opening_m = view.Field("opening_m").AsNumber();
+  for (std::size_t k = 0; k < kNumJoints; ++k) {
+    state.q[k] = q.Item(k).AsNumber(-kFarthestTurn_rad, kFarthestTurn_rad);
+  }
+  state.opening_m = view.Field("opening_m").AsNumber(0.0, kWidest_m);
   return state;
 }
 

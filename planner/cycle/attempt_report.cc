@@ -1,6 +1,7 @@
 #include "planner/cycle/attempt_report.h"
 
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 
 namespace tubetwin {
 
@@ -83,7 +84,7 @@ Json ToJson(const NudgeReport& nudge) {
 
 NudgeReport NudgeReportFromJson(const JsonView& view) {
   NudgeReport nudge;
-  nudge.tube = static_cast<int>(view.Field("tube").AsInteger());
+  nudge.tube = CountFromJson(view.Field("tube"));
   nudge.direction_N = view.Field("direction").AsVector3();
   nudge.travel_m = view.Field("travel_m").AsNumber();
   nudge.contact = view.Field("contact").AsBool();

@@ -4,6 +4,7 @@
 #include "twin/campaign/shard_file.h"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <filesystem>
@@ -145,6 +146,23 @@ TEST_CASE("half-written, damaged and doubled lines are dropped and their rounds 
   damaged(good.substr(good.find('\n') + 1), "jsonl:1");  // The head is gone.
   damaged("", "another campaign");
   damaged("not json at all\n" + good.substr(good.find('\n') + 1), "jsonl:1");
+}
+
+TEST_CASE("a shard that is a pipe or nests without end is refused, at once") {
+  const TemporaryFolder folder;
+  const std::string file = folder / "shard-00000-of-00001.jsonl";
+  REQUIRE(::mkfifo(file.c_str(), 0600) == 0);
+  const Error pipe = Refusal([&] { ReadShardFile(file); });
+  CHECK(pipe.kind() == ErrorKind::kMissing);
+  CHECK_THAT(pipe.what(), Contains(file + ": is a device, pipe or socket"));
+  fs::remove(file);
+  std::string body = "{\"round\":" + std::string(100000, '[');
+  const std::string check = Fingerprint(body + "}");
+  WriteFileAtomically(file, body + ",\"check\":\"" + check + "\"}\n");
+  const ShardContent deep = ReadShardFile(file);
+  REQUIRE(deep.problems.size() == 1);
+  CHECK_THAT(deep.problems[0],
+             Contains(file + ":1: its check fits: byte 73: lists and objects nest"));
 }
 
 TEST_CASE("a round that stands twice with different rows is an error that names both lines") {

@@ -190,5 +190,40 @@ TEST_CASE("Wrong scene files are refused with the field, the value and what is a
   CHECK(MessageOf(bad) == "t.json: tubes[0].centerline_m: two points are needed");
 }
 
+TEST_CASE("A scene file's numbers stay within what a bin holds", "[unit]") {
+  const Json good =
+      ToJson(SceneOf({AlongX(0.0, kRadius), {{0.05, -0.1, 0.04}, {0.05, 0.3, 0.04}}}));
+  REQUIRE(MessageOf(good) == "");
+  const auto said = [&](const char* pointer, const Json& value) {
+    Json bad = good;
+    bad[Json::json_pointer(pointer)] = value;
+    return MessageOf(bad);
+  };
+  CHECK(said("/tubes/1/centerline_m/0/0", 1e300) ==
+        "t.json: tubes[1].centerline_m[0][0]: is 1e+300, allowed are -100 to 100");
+  CHECK(said("/tubes/1/centerline_m/0/2", -3.5) ==
+        "t.json: tubes[1].centerline_m[0][2]: is -3.5, allowed are -3 to 3");
+  CHECK(said("/tubes/1/centerline_m/1", Json::array({0.05, -0.1, 0.04})) ==
+        "t.json: tubes[1].centerline_m[1]: is 0 m from the point before, allowed are 1e-06 m and "
+        "more");
+  CHECK(said("/tubes/1/radius_m", 0.0) ==
+        "t.json: tubes[1].radius_m: is 0, allowed are 0.001 to 0.1");
+  CHECK(said("/tubes/1/length_m", 11.0) ==
+        "t.json: tubes[1].length_m: is 11, allowed are 1e-06 to 10");
+  CHECK(said("/tubes/1/id", -1) == "t.json: tubes[1].id: is -1, allowed are 0 to 2147483647");
+  CHECK(said("/tubes/1/over", Json::array({"x"})) ==
+        "t.json: tubes[1].over[0]: a whole number is needed, found \"x\"");
+  CHECK(said("/crossings/0/gap_m", 1e9) ==
+        "t.json: crossings[0].gap_m: is 1e+09, allowed are -10 to 10");
+  Json zigzag = Json::array();
+  for (int i = 0; i < 10; ++i) zigzag.push_back(Json::array({i % 2 == 0 ? -2.5 : 2.5, 0, 0.02}));
+  CHECK(said("/tubes/0/centerline_m", zigzag) ==
+        "t.json: tubes[0].centerline_m: is 45 m long, allowed are up to 10 m");
+  Json many = Json::array();
+  for (int i = 0; i <= 2000; ++i) many.push_back(Json::array({0.001 * i, 0, 0.02}));
+  CHECK(said("/tubes/0/centerline_m", many) ==
+        "t.json: tubes[0].centerline_m: has 2001 entries, allowed are up to 2000");
+}
+
 }  // namespace
 }  // namespace tubetwin

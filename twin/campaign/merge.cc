@@ -92,9 +92,7 @@ void CheckComplete(const CampaignResult& result, const std::map<Key, Found>& fou
   }
 }
 
-Key KeyOf(const JsonView& row) {
-  return {VariantOf(row), static_cast<int>(row.Field("round").AsInteger())};
-}
+Key KeyOf(const JsonView& row) { return {VariantOf(row), CountFromJson(row.Field("round"))}; }
 
 /// Records out of the three row files of a merged folder.
 std::vector<RoundRecord> ReadMerged(const std::string& folder) {

@@ -3,6 +3,7 @@
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "twin/campaign/campaign.h"
 #include "twin/round/records/json_fields.h"
 
@@ -32,7 +33,7 @@ Json ToJson(const RoundRecord& record) {
 RoundRecord RecordFromJson(const JsonView& view) {
   RoundRecord record;
   record.variant = VariantOf(view);
-  record.round = static_cast<int>(view.Field("round").AsInteger());
+  record.round = CountFromJson(view.Field("round"));
   record.seed = view.Field("seed").AsInteger();
   record.summary = SummaryFromJson(view.Field("summary"));
   const JsonView picks = view.Field("picks"), timings = view.Field("timings");
@@ -63,11 +64,7 @@ Json ParseCheckedLine(const std::string& line) {
   if (Fingerprint(body) != line.substr(line.size() - tail + kCheckHead.size(), kCheckDigits)) {
     throw Error(ErrorKind::kBadData, "damaged (its check does not fit)");
   }
-  try {
-    return Json::parse(body);
-  } catch (const nlohmann::json::exception&) {
-    throw Error(ErrorKind::kBadData, "no JSON although its check fits");
-  }
+  return ParseJson(body, "its check fits");
 }
 
 std::string RecordLine(const RoundRecord& record) { return CheckedLine(ToJson(record)); }

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <sstream>
+#include <optional>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
@@ -18,6 +18,7 @@ namespace {
 
 // A child that was just forked shares the lock for a moment, also when its parent is killed then.
 constexpr double kPatience_s = 2.0;
+constexpr std::uint64_t kMaxLineBytes = std::uint64_t{64} << 20;  // A round of many attempts.
 
 std::optional<Shard> ShardOfName(const std::string& name) {
   Shard shard;
@@ -95,17 +96,14 @@ ShardContent ReadShardFile(const std::string& path) {
     throw Error(ErrorKind::kBadData, path + ": shard files are named shard-00000-of-00004.jsonl");
   }
   out.shard = *shard;
-  const std::string text = ReadFile(path);
-  std::istringstream lines(text);
   int number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    const std::string where = path + ":" + std::to_string(number) + ": ";
+  ForEachLine(path, kMaxLineBytes, [&](const std::string& line, bool whole) {
+    const std::string where = path + ":" + std::to_string(++number) + ": ";
     // A line counts when its line break is there too: the next one is written behind it.
-    if (lines.eof()) {
+    if (!whole) {
       out.problems.push_back(where + "half-written");
       out.damaged += line + "\n";
-      break;
+      return;
     }
     try {
       if (number == 1) {
@@ -125,7 +123,7 @@ ShardContent ReadShardFile(const std::string& path) {
       out.problems.push_back(where + e.what());
       out.damaged += line + "\n";
     }
-  }
+  });
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "scenes/bin_body.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/engine/stepping.h"
@@ -219,6 +220,21 @@ Json CellWorld::State() const {
   return Json{{"steps", steps_}, {"world", Fingerprint(Xml())}, {"integration", state}};
 }
 
+void CellWorld::RequireSane(const JsonView& integration) const {
+  // Far more than any cell reaches; beyond, physics runs on for minutes until it diverges.
+  struct Part {
+    int of;
+    double most;
+  };
+  std::size_t at = 0;
+  for (const Part& part : {Part{mjSTATE_TIME, 1e6}, Part{mjSTATE_QPOS, 100.0},
+                           Part{mjSTATE_QVEL, 1e3}, Part{mjSTATE_ACT, 1e6}}) {
+    const std::size_t end = at + static_cast<std::size_t>(mj_stateSize(model_.get(), part.of));
+    for (; at < end; ++at) integration.Item(at).AsNumber(-part.most, part.most);
+  }
+  for (; at < integration.Size(); ++at) integration.Item(at).AsNumber(-1e9, 1e9);
+}
+
 void CellWorld::Restore(const JsonView& state) {
   const JsonView world = state.Field("world");
   if (world.AsString() != Fingerprint(Xml())) {
@@ -228,8 +244,12 @@ void CellWorld::Restore(const JsonView& state) {
   if (static_cast<int>(integration.size()) != mj_stateSize(model_.get(), mjSTATE_INTEGRATION)) {
     state.Fail("the state has another size than the cell's");
   }
+  RequireSane(state.Field("integration"));
   SetAwake(integration);
-  steps_ = state.Field("steps").AsInteger();
+  if (StatusOf(*data_) != StepStatus::kOk) {
+    state.Field("integration").Fail("is no state that the cell's physics can go on from");
+  }
+  steps_ = CountFromJson(state.Field("steps"));
 }
 
 ScanGeometry CellWorld::Geometry() const {

@@ -56,6 +56,8 @@ class CellWorld {
   int TubeOfGeom(int geom) const { return tube_of_geom_[geom]; }
 
  private:
+  /// Throws Error(kBadData) naming the number of a state that no cell reaches.
+  void RequireSane(const JsonView& integration) const;
   void SetAwake(const std::vector<double>& integration);
 
   void CompileWithStart(const JointVector& q_home);

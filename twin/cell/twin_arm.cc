@@ -176,12 +176,16 @@ Json TwinArm::StoredState() const {
 void TwinArm::Restore(const JsonView& state) {
   const JsonView q = state.Field("q_reference");
   if (q.Size() != kNumJoints) q.Fail("one number for each of the 6 joints is needed");
-  const std::vector<double> numbers = q.AsNumbers();
+  constexpr double kFarthestTurn_rad = 20.0, kHeaviest_kg = 1000.0, kFarthest_m = 10.0;
   mode_ = ArmMode::kReady;
   reference_ = {};
-  std::copy(numbers.begin(), numbers.end(), reference_.q.begin());
-  payload_kg_ = state.Field("payload_kg").AsNumber();
-  p_FPayload_ = state.Field("p_FPayload_m").AsVector3();
+  for (std::size_t k = 0; k < kNumJoints; ++k) {
+    reference_.q[k] = q.Item(k).AsNumber(-kFarthestTurn_rad, kFarthestTurn_rad);
+  }
+  payload_kg_ = state.Field("payload_kg").AsNumber(0.0, kHeaviest_kg);
+  const JsonView place = state.Field("p_FPayload_m");
+  for (std::size_t k = 0; k < place.Size(); ++k) place.Item(k).AsNumber(-kFarthest_m, kFarthest_m);
+  p_FPayload_ = place.AsVector3();
 }
 
 ServoState TwinArm::Servo() const {

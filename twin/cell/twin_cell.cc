@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "twin/cell/twin_cell_impl.h"
 
 namespace tubetwin {
@@ -72,8 +73,8 @@ void TwinCell::Restore(const JsonView& state) {
   impl_->world.Restore(state.Field("world"));
   impl_->arm.Restore(state.Field("arm"));
   impl_->wrist.Restore(state.Field("wrist"));
-  impl_->scanner.SetTaken(static_cast<std::uint64_t>(state.Field("scans").AsInteger()));
-  impl_->frames = state.Field("frames").AsInteger();
+  impl_->scanner.SetTaken(static_cast<std::uint64_t>(CountFromJson(state.Field("scans"))));
+  impl_->frames = CountFromJson(state.Field("frames"));
 }
 
 std::string TwinCell::ModelXml() const { return impl_->world.Xml(); }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/gripper_body.h"
 
@@ -73,14 +74,14 @@ Json TwinGripper::StoredState() const {
 
 void TwinGripper::Restore(const JsonView& state) {
   const JsonView phase = state.Field("phase");
-  phase_ = static_cast<Phase>(phase.AsInteger());
-  if (phase_ < Phase::kMoving || phase_ > Phase::kAtPosition) phase.Fail("allowed: 0 to 3");
-  target_m_ = state.Field("target_m").AsNumber();
-  reference_m_ = state.Field("reference_m").AsNumber();
-  speed_m_s_ = state.Field("speed_m_s").AsNumber();
-  force_N_ = state.Field("force_N").AsNumber();
-  contact_m_ = state.Field("contact_m").AsNumber();
-  still_ = static_cast<int>(state.Field("still").AsInteger());
+  constexpr double kWidest_m = 1.0, kFastest_m_s = 10.0, kStrongest_N = 1e4;
+  phase_ = static_cast<Phase>(IntegerIn(phase, 0, static_cast<int>(Phase::kAtPosition)));
+  target_m_ = state.Field("target_m").AsNumber(-kWidest_m, kWidest_m);
+  reference_m_ = state.Field("reference_m").AsNumber(-kWidest_m, kWidest_m);
+  speed_m_s_ = state.Field("speed_m_s").AsNumber(0.0, kFastest_m_s);
+  force_N_ = state.Field("force_N").AsNumber(0.0, kStrongest_N);
+  contact_m_ = state.Field("contact_m").AsNumber(-kWidest_m, kWidest_m);
+  still_ = CountFromJson(state.Field("still"));
   SetForceRange();
 }
 

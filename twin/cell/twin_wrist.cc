@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "scenes/engine/mj_handles.h"
 #include "twin/cell/arm_body.h"
 
@@ -14,6 +15,7 @@ namespace {
 constexpr int kFz = 2;
 /// The bias walk of the round's physics is given for this time.
 constexpr double kWalkTime_s = 600.0;
+constexpr double kLargestLoad = 1e6;  // N and N m: of a stored state, beyond any sensor.
 
 }  // namespace
 
@@ -68,12 +70,15 @@ void WrenchChain::Restore(const JsonView& state) {
   const auto read = [&](const char* name, Vector6& out) {
     const JsonView field = state.Field(name);
     if (field.Size() != 6) field.Fail("six numbers are needed");
-    const std::vector<double> numbers = field.AsNumbers();
-    std::copy(numbers.begin(), numbers.end(), out.begin());
+    for (std::size_t i = 0; i < 6; ++i) {
+      out[static_cast<Eigen::Index>(i)] = field.Item(i).AsNumber(-kLargestLoad, kLargestLoad);
+    }
   };
   read("filtered", filtered_);
   read("bias", bias_);
-  stream_ = stream_.After(static_cast<std::uint64_t>(state.Field("drawn").AsInteger()));
+  const JsonView drawn = state.Field("drawn");
+  drawn.AsNumber(0.0, 1e15);
+  stream_ = stream_.After(static_cast<std::uint64_t>(drawn.AsInteger()));
   first_ = false;
 }
 
@@ -101,7 +106,14 @@ Json TwinWrist::StoredState() const {
 void TwinWrist::Restore(const JsonView& state) {
   chain_.Restore(state);
   const JsonView newest = state.Field("newest");
-  newest_.time = TimeNs(newest.Field("time_ns").AsInteger());
+  const JsonView time = newest.Field("time_ns");
+  time.AsNumber(0.0, static_cast<double>(world_.now().count()));
+  newest_.time = TimeNs(time.AsInteger());
+  for (const char* name : {"force_N", "torque_Nm"}) {
+    const JsonView load = newest.Field(name);
+    for (std::size_t k = 0; k < load.Size(); ++k)
+      load.Item(k).AsNumber(-kLargestLoad, kLargestLoad);
+  }
   newest_.wrench_K.force_N = newest.Field("force_N").AsVector3();
   newest_.wrench_K.torque_Nm = newest.Field("torque_Nm").AsVector3();
   newest_.saturated = newest.Field("saturated").AsBool();

@@ -6,12 +6,12 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "models/base/disk/build_id.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "scenes/engine/engine_error.h"
 #include "twin/round/folder/file_checks.h"
 #include "twin/round/records/throughput.h"
@@ -19,6 +19,8 @@
 namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr std::uint64_t kMaxRowBytes = std::uint64_t{16} << 20;
 
 std::string CpuName() {
   std::ifstream in("/proc/cpuinfo");
@@ -61,19 +63,20 @@ void RequireSameConfiguration(const std::string& folder, const std::string& reso
 
 void WriteJsonLines(const std::vector<Json>& rows, const std::string& path) {
   std::string text;
-  for (const Json& row : rows) text += row.dump() + "\n";
+  for (const Json& row : rows) {
+    text += row.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  }
   WriteFileAtomically(path, text);
 }
 
 void ReadJsonLines(const std::string& path, const std::function<void(const JsonView& row)>& use) {
-  std::istringstream lines(ReadFile(path));
   int number = 0;
-  for (std::string line; std::getline(lines, line);) {
+  ForEachLine(path, kMaxRowBytes, [&](const std::string& line, bool) {
     const std::string where = path + ":" + std::to_string(++number);
-    const Json row = Json::parse(line, nullptr, false);
+    const Json row = ParseJson(line, where);
     if (!row.is_object()) throw Error(ErrorKind::kBadData, where + ": not a JSON object");
     use(JsonView(row, where));
-  }
+  });
 }
 
 Json RoundSummaryJson(const RoundRecord& record, const std::vector<Metric>& metrics) {

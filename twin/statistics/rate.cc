@@ -1,6 +1,7 @@
 #include "twin/statistics/rate.h"
 
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 
 namespace tubetwin {
 namespace {
@@ -29,8 +30,7 @@ Json ToJson(const Rate& rate) {
 }
 
 Counts CountsFromJson(const JsonView& view) {
-  const Counts counts{static_cast<int>(view.Field("k").AsInteger()),
-                      static_cast<int>(view.Field("n").AsInteger())};
+  const Counts counts{CountFromJson(view.Field("k")), CountFromJson(view.Field("n"))};
   if (counts.k < 0 || counts.k > counts.n) view.Fail("k must lie between 0 and n");
   return counts;
 }

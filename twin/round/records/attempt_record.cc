@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "twin/round/records/json_fields.h"
 
 namespace tubetwin {
@@ -43,7 +44,7 @@ void AddChosen(const std::optional<ChosenPick>& chosen, Json& row) {
 
 ChosenPick ChosenFromJson(const JsonView& row) {
   ChosenPick chosen;
-  chosen.target = static_cast<int>(row.Field("target").AsInteger());
+  chosen.target = CountFromJson(row.Field("target"));
   chosen.target_class = EnumFromJson(row.Field("class"), TubeClass::kStrong);
   const JsonView motion = row.Field("motion");
   chosen.motion = motion.Field("name").AsString();
@@ -81,7 +82,7 @@ Detection DetectionFromJson(const JsonView& view) {
 
 Prediction PredictionFromJson(const JsonView& view) {
   return {view.Field("displacement_m").AsNumber(), view.Field("extra_probability").AsNumber(),
-          static_cast<int>(view.Field("samples").AsInteger())};
+          CountFromJson(view.Field("samples"))};
 }
 
 Json TruthJson(const std::optional<AttemptTruth>& truth) {
@@ -95,7 +96,7 @@ Json TruthJson(const std::optional<AttemptTruth>& truth) {
 
 AttemptTruth TruthFromJson(const JsonView& view) {
   AttemptTruth truth;
-  if (const auto held = view.Optional("held")) truth.held = static_cast<int>(held->AsInteger());
+  if (const auto held = FieldOrNull(view, "held")) truth.held = CountFromJson(*held);
   truth.placed_ids = IntegersFromJson(view.Field("placed_ids"));
   truth.outside_ids = IntegersFromJson(view.Field("outside_ids"));
   truth.placement_error_mm = OptionalNumber(view, "placement_error_mm");
@@ -162,15 +163,16 @@ Json ToJson(const AttemptRecord& attempt, const RowPlace& place) {
 
 AttemptRecord AttemptFromJson(const JsonView& row) {
   AttemptRecord attempt;
-  attempt.attempt = static_cast<int>(row.Field("attempt").AsInteger());
-  if (const auto tubes = row.Optional("tubes_in_bin")) {
-    attempt.tubes_in_bin = static_cast<int>(tubes->AsInteger());
+  attempt.attempt = CountFromJson(row.Field("attempt"));
+  if (const auto tubes = FieldOrNull(row, "tubes_in_bin")) {
+    attempt.tubes_in_bin = CountFromJson(*tubes);
   }
-  if (row.Optional("target")) attempt.chosen = ChosenFromJson(row);
+  if (FieldOrNull(row, "target")) attempt.chosen = ChosenFromJson(row);
   attempt.used_simulator = row.Field("used_simulator").AsBool();
   if (const auto found = row.Optional("prediction"))
     attempt.prediction = PredictionFromJson(*found);
-  if (const auto found = row.Optional("detection")) attempt.detection = DetectionFromJson(*found);
+  if (const auto found = FieldOrNull(row, "detection"))
+    attempt.detection = DetectionFromJson(*found);
   const JsonView resolution = row.Field("resolution");
   attempt.resolution_used = resolution.Field("used").AsBool();
   if (const auto name = resolution.Optional("strategy")) attempt.strategy = name->AsString();
@@ -184,8 +186,8 @@ AttemptRecord AttemptFromJson(const JsonView& row) {
   }
   attempt.outcome = EnumFromJson(row.Field("outcome"), AttemptOutcome::kFault);
   attempt.reason = row.Field("reason").AsString();
-  if (const auto success = row.Optional("success")) attempt.success = success->AsBool();
-  if (const auto times = row.Optional("sim_s")) {
+  if (const auto success = FieldOrNull(row, "success")) attempt.success = success->AsBool();
+  if (const auto times = FieldOrNull(row, "sim_s")) {
     attempt.sim_s.emplace();
     attempt.sim_s->scan = times->Field("scan").AsNumber();
     attempt.sim_s->move = times->Field("move").AsNumber();
@@ -193,7 +195,7 @@ AttemptRecord AttemptFromJson(const JsonView& row) {
     attempt.sim_s->settle = times->Field("settle").AsNumber();
   }
   if (const auto phases_s = row.Optional("phases_s")) attempt.phases_s = PhasesFromJson(*phases_s);
-  if (const auto truth = row.Optional("truth")) attempt.truth = TruthFromJson(*truth);
+  if (const auto truth = FieldOrNull(row, "truth")) attempt.truth = TruthFromJson(*truth);
   return attempt;
 }
 
@@ -212,7 +214,7 @@ Json ToJson(const AttemptTiming& timing, const RowPlace& place) {
 
 AttemptTiming TimingFromJson(const JsonView& row) {
   AttemptTiming timing;
-  timing.attempt = static_cast<int>(row.Field("attempt").AsInteger());
+  timing.attempt = CountFromJson(row.Field("attempt"));
   if (const auto times = row.Optional("compute_s")) {
     timing.compute_s = AttemptReport::ComputeTime{
         times->Field("modelling").AsNumber(), times->Field("planning").AsNumber(),

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "models/base/text.h"
 
 namespace tubetwin {
@@ -19,19 +21,25 @@ inline int SchemaVersion(const JsonView& document, const std::string& name, int 
                 "' is needed here");
 }
 
+/// A field that rows always have, null where there is nothing to tell. Throws Error(kBadData) where
+/// it is missing.
+inline std::optional<JsonView> FieldOrNull(const JsonView& row, const std::string& name) {
+  return row.Field(name).json().is_null() ? std::nullopt : row.Optional(name);
+}
+
 /// The number of a row's or record's variant, which earlier versions called its arm. Throws
 /// Error(kBadData).
 inline int VariantOf(const JsonView& row) {
   const auto variant = row.Optional("variant");
   const auto number = variant ? variant : row.Optional("arm");
-  return static_cast<int>((number ? *number : row.Field("variant")).AsInteger());
+  return CountFromJson(number ? *number : row.Field("variant"));
 }
 
 /// The whole numbers of a list. Throws Error(kBadData).
 inline std::vector<int> IntegersFromJson(const JsonView& view) {
   std::vector<int> numbers;
   for (std::size_t i = 0; i < view.Size(); ++i) {
-    numbers.push_back(static_cast<int>(view.Item(i).AsInteger()));
+    numbers.push_back(CountFromJson(view.Item(i)));
   }
   return numbers;
 }

@@ -10,12 +10,12 @@ namespace {
 constexpr const char* kCrashed = "crashed";
 
 int Integer(const JsonView& view, const std::string& name) {
-  return static_cast<int>(view.Field(name).AsInteger());
+  return CountFromJson(view.Field(name));
 }
 
 int IntegerOrZero(const JsonView& view, const std::string& name) {
   const auto field = view.Optional(name);
-  return field ? static_cast<int>(field->AsInteger()) : 0;
+  return field ? CountFromJson(*field) : 0;
 }
 
 }  // namespace
