@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,14 +35,16 @@ struct Pile {
 
 /// Reads pile.json, CSV (ParsePileCsv) or the public set's tube_configurations text, told
 /// apart by content. `part` and `bin_size_m` replace what the file says (CSV and text: part
-/// `leao2022` and bin 0.80 x 0.60 x 0.20 m unless given). A tube's own length wins over the part's.
+/// `leao2022` and bin 0.80 x 0.60 x 0.20 m unless given); where a part replaces radii or masses
+/// that the file says, `tell` gets a sentence about it. A tube's own length wins over the part's.
 /// Throws Error(kMissing), Error(kBadData) naming file, line or field, value and what is allowed:
-/// no tubes, NaN, fewer than two nodes, a tube longer than the bin's diagonal (with its walls) and
-/// more.
+/// no tubes, NaN, fewer than two nodes, a tube longer than the bin's diagonal (with its walls), one
+/// that lies outside of the bin or runs through its floor or a wall, and more.
 struct PileOverrides {
   std::optional<std::string> part;
   std::optional<std::array<double, 3>> bin_size_m;
   std::optional<double> unit_m;  ///< Of the lengths in CSV and text; else metres.
+  std::function<void(const std::string&)> tell;
 };
 Pile LoadPile(const std::string& path, const PileOverrides& overrides = {});
 /// Content of a pile.json.
@@ -48,6 +52,12 @@ Json ToJson(const Pile& pile);
 void SavePile(const Pile& pile, const std::string& path);
 /// Throws Error(kBadData) as LoadPile does; `source` names the pile in the message.
 void ValidatePile(const Pile& pile, const std::string& source);
+
+/// Throws Error(kBadData) naming the first tube that is not in the bin, and how far from it: its
+/// middle outside of the walls, or its axis in or under the floor or within a wall. Tubes that lean
+/// over a wall or hang above the bin are in it. Part of LoadPile; to be asked again where the bin
+/// changes.
+void RequireInBin(const Pile& pile, const std::string& source);
 
 /// escaped: a tube lies outside the bin or hangs over a wall with its centre of mass outside.
 enum class SettleStatus { kSettled, kTimeout, kEscaped, kDiverged };

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/foreign/content.h"
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "models/base/text.h"
 #include "scenes/pile.h"
 #include "scenes/pile_text.h"
@@ -15,6 +15,7 @@ namespace {
 
 constexpr const char kDefaultPart[] = "leao2022";
 constexpr std::array<double, 3> kDefaultBinSize_m = {0.80, 0.60, 0.20};
+constexpr std::uint64_t kMaxPileBytes = std::uint64_t{64} << 20;
 constexpr double kSameLength = 0.01;  // Relative; then a tube weighs what the part says.
 
 // Mass of a tube of its own length.
@@ -37,11 +38,7 @@ void ApplyPart(const Part& part, PileTube& tube) {
 
 PileTube TubeFromJson(const JsonView& view, const Part& part) {
   PileTube tube;
-  const std::int64_t id = view.Field("id").AsInteger();
-  if (id < 0 || id > std::numeric_limits<int>::max()) {
-    view.Field("id").Fail("is " + std::to_string(id) + "; allowed: 0 to 2147483647");
-  }
-  tube.id = static_cast<int>(id);
+  tube.id = CountFromJson(view.Field("id"));
   tube.centerline_N = view.Field("centerline_m").AsPolyline();
   const auto radius = view.Optional("radius_m");
   tube.radius_m = radius ? radius->AsNumber() : part.radius_m;
@@ -53,16 +50,48 @@ PileTube TubeFromJson(const JsonView& view, const Part& part) {
   return tube;
 }
 
+/// Tells what of a file's own figures a part replaced.
+class Replaced {
+ public:
+  Replaced(const PileOverrides& overrides, std::string source)
+      : tell_(overrides.tell), source_(std::move(source)) {}
+
+  void Compare(const PileTube& said, const PileTube& now) {
+    Add("radius", "m", said.radius_m, now.radius_m, radii_);
+    Add("mass", "kg", said.mass_kg, now.mass_kg, masses_);
+  }
+  void Tell(const Part& part) const {
+    if (!tell_ || (radii_.empty() && masses_.empty())) return;
+    const std::string both = radii_.empty() || masses_.empty() ? "" : ", ";
+    tell_(source_ + ": part " + part.name + " replaces what the file says: " + radii_ + both +
+          masses_);
+  }
+
+ private:
+  static void Add(const char* what, const char* unit, double said, double now, std::string& text) {
+    if (said == now || !text.empty()) return;  // One tube's figures stand for all.
+    text = std::string(what) + " " + Number(said) + " " + unit + " by " + Number(now) + " " + unit;
+  }
+
+  const std::function<void(const std::string&)>& tell_;
+  std::string source_, radii_, masses_;
+};
+
 Pile PileFromJson(const JsonView& document, const PileOverrides& overrides) {
   RequireSchema(document, "pile");
   Pile pile;
   pile.bin = BinFromJson(document.Field("bin"));
   pile.part = overrides.part ? LoadPart(*overrides.part) : PartFromJson(document.Field("part"));
   const JsonView tubes = document.Field("tubes");
+  Replaced replaced(overrides, document.source());
   for (std::size_t i = 0; i < tubes.Size(); ++i) {
-    pile.tubes.push_back(TubeFromJson(tubes.Item(i), pile.part));
-    if (overrides.part) ApplyPart(pile.part, pile.tubes.back());
+    const PileTube said = TubeFromJson(tubes.Item(i), pile.part);
+    pile.tubes.push_back(said);
+    if (!overrides.part) continue;
+    ApplyPart(pile.part, pile.tubes.back());
+    replaced.Compare(said, pile.tubes.back());
   }
+  replaced.Tell(pile.part);
   if (const auto seed = document.Optional("seed")) {
     pile.seed = static_cast<std::uint64_t>(seed->AsInteger());
   }
@@ -90,15 +119,22 @@ Pile PileFromText(const std::vector<TextTube>& tubes, const PileOverrides& overr
   Pile pile;
   pile.part = LoadPart(overrides.part.value_or(kDefaultPart));
   pile.bin.size_m = kDefaultBinSize_m;
+  Replaced replaced(overrides, path);
   for (const TextTube& text : tubes) {
     PileTube tube;
     tube.id = text.id;
     tube.centerline_N = text.centerline_N;
     ApplyPart(pile.part, tube);
     // The file's own radius stands unless the caller asked for a part.
-    if (text.radius_m > 0 && !overrides.part) tube.radius_m = text.radius_m;
+    if (text.radius_m > 0) {
+      PileTube said = tube;
+      said.radius_m = text.radius_m;
+      if (!overrides.part) tube.radius_m = text.radius_m;
+      replaced.Compare(said, tube);
+    }
     pile.tubes.push_back(tube);
   }
+  replaced.Tell(pile.part);
   return pile;
 }
 
@@ -113,7 +149,7 @@ bool LooksLikeCsv(std::string_view line) {
 }  // namespace
 
 Pile LoadPile(const std::string& path, const PileOverrides& overrides) {
-  const std::string text = ReadFile(path);
+  const std::string text = ReadFile(path, kMaxPileBytes);
   std::size_t start = text.starts_with("\xef\xbb\xbf") ? 3 : 0;
   start = text.find_first_not_of(" \t\r\n", start);
   if (start == std::string::npos) {
@@ -128,7 +164,7 @@ Pile LoadPile(const std::string& path, const PileOverrides& overrides) {
       throw Error(ErrorKind::kUsage,
                   path + ": --units is for CSV and text; pile.json is in metres");
     }
-    const Json json = ReadJsonFile(path);
+    const Json json = ParseJson(text, path);
     pile = PileFromJson(JsonView(json, path), overrides);
   } else if (first.find_first_not_of("0123456789. \t") == std::string_view::npos) {
     pile = PileFromText(ParsePileConfiguration(text, path, overrides.unit_m), overrides, path);
@@ -145,6 +181,7 @@ Pile LoadPile(const std::string& path, const PileOverrides& overrides) {
   }
   if (overrides.bin_size_m) pile.bin.size_m = *overrides.bin_size_m;
   ValidatePile(pile, path);
+  RequireInBin(pile, path);
   return pile;
 }
 

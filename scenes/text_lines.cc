@@ -39,8 +39,9 @@ void TextLines::Need(const std::string& what) {
 }
 
 void TextLines::Fail(const std::string& problem, int number) const {
-  throw Error(ErrorKind::kBadData,
-              source_ + ": line " + std::to_string(number > 0 ? number : number_) + ": " + problem);
+  throw Error(ErrorKind::kBadData, source_ + ": line " +
+                                       std::to_string(number > 0 ? number : number_) + ": " +
+                                       Printable(problem));
 }
 
 double TextLines::AsNumber(std::string_view field, const std::string& name) const {

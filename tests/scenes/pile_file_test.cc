@@ -232,5 +232,68 @@ TEST_CASE("A bad pile file is refused with its place, value and what is allowed"
   CHECK_THAT(MessageOf([&] { LoadPile(unknown); }, ErrorKind::kMissing), Catch::Contains("pvc_a"));
 }
 
+/// A pile of one straight tube in the bin of the paper.
+Pile OneTube(const Vector3& from_N, const Vector3& to_N) {
+  Pile pile;
+  pile.part = LoadPart("pvc_a");
+  pile.tubes.push_back({7, {from_N, to_N}, 0.0125, 0.055, std::nullopt});
+  return pile;
+}
+
+TEST_CASE("A tube is in the bin over its floor, over a wall and above it, and nowhere else",
+          "[unit]") {
+  for (const auto& [from, to] : std::vector<std::pair<Vector3, Vector3>>{
+           {{-0.2, 0, 0.0125}, {0.2, 0, 0.0125}},
+           {{-0.2, 0, 1e-6}, {0.2, 0, 1e-6}},  // Half of it in the floor: pushed out.
+           {{0, 0, 0.3}, {0.5, 0, 0.05}},      // Leans over the wall and hangs outside.
+           {{0.3849, -0.2, 0.05}, {0.3849, 0.2, 0.05}},
+           {{0, 0, 1.0}, {0.4, 0, 1.0}}}) {
+    CHECK_NOTHROW(RequireInBin(OneTube(from, to), "p"));
+  }
+  struct Misplaced {
+    Vector3 from_N, to_N;
+    std::string said;
+  };
+  for (const Misplaced& c : std::vector<Misplaced>{
+           {{0.2, 0, 0.02}, {0.6, 0, 0.3}, "its middle is at (0.4, 0, 0.16) m, 0.015 m outside"},
+           {{1.0, 0.69, 0.02}, {1.2, 0.69, 0.02}, "(1.1, 0.69, 0.02) m, 0.8193 m outside the bin"},
+           {{-0.2, 0, 0.02},
+            {0.2, 0, -0.01},
+            "floor or under it at (0.2, 0, -0.01) m, 0.01 m too low"},
+           {{0, 0, 0.3}, {0.5, 0, -0.03}, "under it at (0.5, 0, -0.03) m, 0.01 m too low"},
+           {{-0.2, 0, 0.02}, {0.42, 0, 0.02}, "inside the bin's wall at (0.4"},
+           {{0, -0.2, 0.02},
+            {0, 0.3, 0.02},
+            "wall at (0, 0.3, 0.02) m, 0.01 m beyond its inner face"}}) {
+    const std::string message =
+        MessageOf([&] { RequireInBin(OneTube(c.from_N, c.to_N), "p.csv"); }, ErrorKind::kBadData);
+    CHECK_THAT(message, Catch::StartsWith("p.csv: tubes[0] (id 7): its "));
+    CHECK_THAT(message, Catch::Contains(c.said));
+    CHECK_THAT(message, Catch::Contains("allowed: tubes in the bin, 0.77 x 0.58 x 0.09 m"));
+  }
+}
+
+TEST_CASE("A part tells which of a file's figures it replaces, and only those", "[unit]") {
+  const Folder folder("replaced");
+  const std::string path = folder.Path("p.json");
+  SavePile(OneTube({-0.2, 0, 0.02}, {0.2, 0, 0.02}), path);
+  std::vector<std::string> told;
+  PileOverrides overrides;
+  overrides.tell = [&](const std::string& text) { told.push_back(text); };
+  LoadPile(path, overrides);
+  CHECK(told.empty());
+  overrides.part = "leao2022";
+  LoadPile(path, overrides);  // Its mass for 0.4 m, the same radius.
+  REQUIRE(told.size() == 1);
+  CHECK_THAT(told[0],
+             Catch::Contains("p.json: part leao2022 replaces what the file says: mass 0.055"));
+  told.clear();
+  const std::string csv =
+      folder.Write("p.csv", "tube,index,x,y,z\n0,0,-0.2,0,0.02\n0,1,0.2,0,0.02\n");
+  overrides.part = "hose_b";
+  LoadPile(csv, overrides);  // It says no radius and no mass.
+  CHECK(told.empty());
+}
+
 }  // namespace
 }  // namespace tubetwin
