@@ -198,6 +198,21 @@ TEST_CASE("A scan that no camera took is refused with its file", "[unit]") {
   }
 }
 
+TEST_CASE("A file larger than any scan of the scanner is refused before it takes memory",
+          "[unit]") {
+  Bench bench;
+  bench.Trigger();
+  const std::string path = bench.folder / "scan-000001.pcd";
+  std::ofstream(bench.folder / "growing") << "# .PCD v0.7\n";
+  fs::resize_file(bench.folder / "growing", std::uintmax_t{48} << 27);
+  fs::rename(bench.folder / "growing", path);
+  REQUIRE(bench.Await() == ScanStatus::kFailed);
+  CHECK_THAT(
+      bench.driver.FailureReason(),
+      Contains("scan-000001.pcd: holds 6442450944 bytes; allowed: 815824896 for four scans of "
+               "3186816 points"));
+}
+
 TEST_CASE("A folder that is not there is a device that cannot be reached", "[unit]") {
   Bench bench;
   ScannerLinkConfig config = bench.Link(1.0);

@@ -28,6 +28,9 @@ constexpr auto kPoll = std::chrono::milliseconds(10);
 constexpr auto kQuiet = std::chrono::milliseconds(200);     // Before a file that may grow is read.
 constexpr auto kSettled = std::chrono::milliseconds(1000);  // Nobody is writing it any more.
 
+constexpr std::uint64_t kTimesTheScan = 4;      // Other scanners see more than the cell's.
+constexpr std::uint64_t kMostBytesAPoint = 64;  // Every field in binary, or six in text.
+
 /// Tells whether a file is still the one that was looked at.
 struct Stamp {
   std::uint64_t file = 0;  ///< Inode.
@@ -156,6 +159,12 @@ class FolderLink {
                                    Candidate& candidate) const {
     if (candidate.name != name || !(candidate.stamp == entry.stamp)) {
       candidate = {name, entry.stamp, WallClock::now(), ""};
+    }
+    const std::uint64_t most = kMostBytesAPoint * kTimesTheScan * config_.max_points;
+    if (static_cast<std::uint64_t>(entry.stamp.size) > most) {
+      return ScanFailure{"scanner: " + Path(name) + ": holds " + std::to_string(entry.stamp.size) +
+                         " bytes; allowed: " + std::to_string(most) + " for four scans of " +
+                         std::to_string(config_.max_points) + " points"};
     }
     const auto quiet = WallClock::now() - candidate.since;
     if (candidate.problem.empty()) {

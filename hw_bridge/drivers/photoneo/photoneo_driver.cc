@@ -1,5 +1,6 @@
 #include "hw_bridge/drivers/photoneo/photoneo_driver.h"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace tubetwin {
@@ -33,6 +34,13 @@ std::unique_ptr<Scanner> PhotoneoDriver::Connect(const std::string& link,
   ScannerLinkConfig used = config;
   used.driver = link;
   used.rate = context.rate;
+  const ScannerSpec& scanner = context.model.scanner;
+  used.max_points = 1;
+  for (const std::string& resolution : scanner.resolutions) {
+    const ScanSize size = SizeOfScan(scanner, resolution);
+    used.max_points = std::max(used.max_points, static_cast<std::uint64_t>(size.width) *
+                                                    static_cast<std::uint64_t>(size.height));
+  }
   return ConnectScanner(used, context.believed_X_NS);
 }
 

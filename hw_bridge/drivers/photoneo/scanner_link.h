@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -17,6 +18,9 @@ struct ScannerLinkConfig {
   double timeout_s = 10.0;            ///< From a trigger to its whole scan, cell time.
   /// Cell time per wall time: of the whole cell, so the cell file's own key and not visited here.
   double rate = 1.0;
+  /// Points of the largest scan of the cell's scanner, not visited here: a file of more than four
+  /// times as many is refused before it takes memory.
+  std::uint64_t max_points = 2064 * 1544;
 
   void Visit(ConfigVisitor& v);
   /// Throws Error(kConfig) for what the fields' own ranges cannot say.
