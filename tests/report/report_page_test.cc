@@ -212,7 +212,7 @@ TEST_CASE("what a result folder holds is shown, what it lacks is left out") {
   WriteRoundReport(folder.path(), page, false);
   const std::string html = ReadFile(page);
   CHECK_THAT(html, Contains("id=\"stage\"") && Contains(Base64("picture")) &&
-                       Contains("<a href=\"failures/attempt_001/film.mp4\">film</a>") &&
+                       Contains("<a href=\"./failures/attempt_001/film.mp4\">film</a>") &&
                        Contains("tubetwin run config.resolved.toml --video --out again"));
   // The failed one comes first, both have their load; one of them its plan in the gallery.
   CHECK(html.find(">attempt 1: nothing held</option>") < html.find(">attempt 2: success</option>"));
@@ -246,12 +246,37 @@ TEST_CASE("a folder that is no round's, or damaged, is refused with its reason")
   WriteRoundRecord(Whole(Round({Placed()})), folder.path());
   const std::string good = ReadFile(folder / "picks.jsonl");
   WriteFileAtomically(folder / "picks.jsonl", good + "{\"round\":\n");
+  refused(ErrorKind::kBadData, "picks.jsonl:2: not valid JSON at byte");
+  WriteFileAtomically(folder / "picks.jsonl", good + "[]\n");
   refused(ErrorKind::kBadData, "picks.jsonl:2: not a JSON object");
+  for (const char* key : {"attempt", "tubes_in_bin", "target", "used_simulator", "detection",
+                          "resolution", "outcome", "reason", "success", "sim_s", "truth"}) {
+    Json lacking = Json::parse(good);
+    lacking.erase(key);
+    WriteFileAtomically(folder / "picks.jsonl", good + lacking.dump() + "\n");
+    refused(ErrorKind::kBadData, std::string("picks.jsonl:2: field '") + key + "' is missing");
+  }
   Json row = Json::parse(good);
   row["detection"]["force_N"] = "heavy";
   WriteFileAtomically(folder / "picks.jsonl", good + row.dump() + "\n");
   refused(ErrorKind::kBadData, "picks.jsonl:2: detection.force_N: a number is needed");
   CHECK_FALSE(std::filesystem::exists(folder / "report.html"));
+}
+
+TEST_CASE("a link to a folder of any name leads there, and is never read as a script") {
+  CHECK(LinkTo("film.mp4") == "./film.mp4");
+  CHECK(LinkTo("../a b/film.mp4") == "../a%20b/film.mp4");
+  CHECK(LinkTo("/x/50%#?&\"'<.mp4") == "/x/50%25%23%3F%26%22%27%3C.mp4");
+  CHECK(LinkTo("javascript:alert(1)/video.mp4") == "./javascript%3Aalert%281%29/video.mp4");
+  CHECK(LinkTo("//host/x") == "/host/x");
+  const TemporaryFolder folder;
+  const std::string round = folder / "javascript:alert(1);void(0)";
+  WriteRoundRecord(Round({Placed()}), round);
+  WriteFileAtomically(round + "/video.mp4", "film");
+  WriteRoundReport(round, folder / "r.html", false);
+  CHECK_THAT(ReadFile(folder / "r.html"),
+             Contains("<a href=\"./javascript%3Aalert%281%29%3Bvoid%280%29/video.mp4\">The film") &&
+                 !Contains("href=\"javascript"));
 }
 
 TEST_CASE("a round without attempts still gives a page") {

@@ -119,7 +119,8 @@ std::vector<ShownAttempt> ShownAttempts(const RoundRecord& record, const std::st
 }
 
 std::string RepeatCommand(const std::string& link) {
-  const std::string file = Joined(link, "config.resolved.toml");
+  std::string file = Joined(link, "config.resolved.toml");
+  if (file.starts_with('-')) file = "./" + file;  // No option.
   std::string quoted;
   for (const char c : file) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   const bool plain = file.find_first_not_of(

@@ -31,7 +31,7 @@ std::string GalleryCard(const ShownAttempt& attempt, std::size_t index, int scen
     out += "<a href=\"#view\" data-scene=\"" + std::to_string(scene) + "\">3-D view</a> ";
   }
   if (!attempt.film.empty()) {
-    out += "<a href=\"" + Escaped(attempt.film) + "\">film</a> ";
+    out += "<a href=\"" + LinkTo(attempt.film) + "\">film</a> ";
   }
   return out + "</p><pre class=\"command\">" + Escaped(RepeatCommand(attempt.folder)) +
          "</pre></div></article>\n";

@@ -54,7 +54,7 @@ std::string PictureHtml(const KeptForReport& kept) {
   }
   if (!kept.video.empty()) {
     out +=
-        "<p class=\"links\"><a href=\"" + Escaped(kept.video) + "\">The film of the round</a></p>";
+        "<p class=\"links\"><a href=\"" + LinkTo(kept.video) + "\">The film of the round</a></p>";
   }
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <string_view>
 
 #include "models/base/json.h"
 
@@ -20,6 +21,24 @@ std::string IntervalHtml(const ShareInterval& interval, const Pointer& at) {
 }
 
 }  // namespace
+
+std::string LinkTo(const std::string& path) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~/";
+  const bool leads_away = path.starts_with('/') || path.starts_with("../");
+  std::string out = leads_away ? "" : "./";
+  for (const char c : path) {
+    if (c == '/' && out == "/") continue;  // Two would begin the name of a host.
+    if (kPlain.find(c) != std::string_view::npos) {
+      out += c;
+      continue;
+    }
+    char code[4];
+    std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned char>(c));
+    out += code;
+  }
+  return out;
+}
 
 std::string Escaped(const std::string& text) {
   std::string out;

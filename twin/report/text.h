@@ -15,6 +15,10 @@ inline constexpr const char* kDash = "\xe2\x80\x93";
 /// Text for HTML, between tags and in quoted attributes.
 std::string Escaped(const std::string& text);
 
+/// A link to a file, from the folder of the page: percent-encoded (RFC 3986), and never read as a
+/// scheme such as "javascript:", for HTML.
+std::string LinkTo(const std::string& path);
+
 /// JSON for a script element: no text in it can end the element or begin a comment, and it stays
 /// the same JSON. Bytes that are no UTF-8 become U+FFFD.
 std::string ScriptJson(const Json& json);
