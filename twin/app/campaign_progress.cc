@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 
 #include "models/base/error.h"
 #include "twin/campaign/campaign_round.h"
@@ -27,7 +26,7 @@ class Teller {
   }
   void Notice(const std::string& text) {
     line_.Clear();
-    std::fprintf(stderr, "tubetwin: %s\n", text.c_str());
+    Complain(text);
   }
 
  private:
@@ -60,9 +59,9 @@ int RunCampaignWithProgress(const Campaign& campaign, CampaignRunOptions options
   }
   Say(common, ProgressText(run.progress));
   if (run.end == CampaignEnd::kDone) return 0;
-  std::fprintf(stderr, "tubetwin: %s with %d of %d rounds saved; run again to go on\n",
-               run.end == CampaignEnd::kStopped ? "stopped" : "the time is up", run.progress.done,
-               run.progress.total);
+  Complain(std::string(run.end == CampaignEnd::kStopped ? "stopped" : "the time is up") + " with " +
+           std::to_string(run.progress.done) + " of " + std::to_string(run.progress.total) +
+           " rounds saved; run again to go on");
   return static_cast<int>(ErrorKind::kInterrupted);
 }
 

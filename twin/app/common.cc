@@ -9,6 +9,8 @@
 #include <CLI/CLI.hpp>
 
 #include "models/base/error.h"
+#include "models/base/text.h"
+#include "twin/app/command_line/suggest.h"
 #include "twin/round/scenario_check.h"
 
 namespace tubetwin {
@@ -18,8 +20,12 @@ volatile std::sig_atomic_t g_stop = 0;  // Signal handlers may touch nothing els
 
 }  // namespace
 
-void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc,
-                      bool out_required) {
+void AddCommonOptions(CLI::App& verb, Common& common, const UsedKeys& used_keys,
+                      const std::string& out_doc, bool out_required) {
+  verb.preparse_callback([&verb, &common, used_keys](std::size_t) {
+    common.verb = FullName(verb);
+    common.used_keys = used_keys;
+  });
   verb.add_option("--set", common.overrides, "Override a configuration key: a.b=value (repeatable)")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
@@ -38,7 +44,26 @@ void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc
   verb.add_flag("-q,--quiet", common.quiet, "Say nothing but errors");
 }
 
+void RequireUsedKeys(const Common& common, const UsedKeys& used, const std::string& for_what) {
+  RefuseUnusedKeys(common.overrides, used, common.verb + " " + for_what);
+}
+
+PileOverrides GivenPile(const std::string& part, const std::string& bin, const Scenario& scenario,
+                        const Common& common) {
+  PileOverrides out = AskedOverrides(scenario);
+  if (!part.empty()) out.part = part;
+  if (!bin.empty()) out.bin_size_m = ParseBinSize(bin);
+  out.tell = [&common](const std::string& text) { Say(common, text); };
+  return out;
+}
+
 void RequireSoundCell(const Scenario& scenario, const Common& common) {
+  std::error_code unknown;  // What cannot be looked at is read, which says why.
+  if (!scenario.pile.file.empty() && !std::filesystem::is_directory(scenario.pile.file, unknown)) {
+    PileOverrides given = AskedOverrides(scenario);
+    given.tell = [&common](const std::string& text) { Say(common, text); };
+    LoadPile(scenario.pile.file, given);
+  }
   const std::vector<Finding> cell = CheckScenario(scenario);
   const std::vector<Finding> part = CheckScenarioPart(scenario);
   RequirePossible(cell);
@@ -106,7 +131,7 @@ std::function<bool()> StopOnSignals() {
 bool StopAtOnceOnSignals() { return g_stop > 1; }
 
 void Say(const Common& common, const std::string& line) {
-  if (!common.quiet) std::fprintf(stderr, "%s\n", line.c_str());
+  if (!common.quiet) std::fprintf(stderr, "%s\n", ForTerminal(line).c_str());
 }
 
 ProgressLine::ProgressLine(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) == 1) {}
@@ -118,7 +143,7 @@ void ProgressLine::Clear() {
 }
 
 void ProgressLine::Show(const std::string& text) {
-  if (enabled_) std::fprintf(stderr, "\r\033[K%s", text.substr(0, 120).c_str());
+  if (enabled_) std::fprintf(stderr, "\r\033[K%s", Printable(text.substr(0, 120)).c_str());
 }
 
 TubeScene SceneOfPile(const Pile& pile) {

@@ -9,6 +9,8 @@
 #include "models/base/parallel.h"
 #include "perception/scene/tube_scene.h"
 #include "scenes/pile.h"
+#include "twin/app/command_line/terminal.h"
+#include "twin/app/command_line/used_keys.h"
 #include "twin/round/scenario.h"
 
 namespace CLI {
@@ -24,6 +26,8 @@ struct Common {
   std::optional<std::int64_t> seed;
   std::string out;
   bool json = false, verbose = false, quiet = false;
+  std::string verb;             ///< The chosen one, "tubetwin scan".
+  UsedKeys used_keys;           ///< Those of it that --set may name.
   std::function<int()> action;  ///< Returns the exit code.
 
   Parallelism parallelism() const {
@@ -31,10 +35,19 @@ struct Common {
   }
 };
 
-/// Adds --set, --threads, --seed, --out, --json, -v, -q to a verb. `out_doc` empty: no --out;
-/// `out_required`: refused without it.
-void AddCommonOptions(CLI::App& verb, Common& common, const std::string& out_doc,
-                      bool out_required);
+/// Adds --set, --threads, --seed, --out, --json, -v, -q to a verb. `used_keys`: what --set may
+/// name, all else is refused (RefuseUnusedKeys). `out_doc` empty: no --out; `out_required`: refused
+/// without it.
+void AddCommonOptions(CLI::App& verb, Common& common, const UsedKeys& used_keys,
+                      const std::string& out_doc, bool out_required);
+
+/// Where a verb uses other keys for one kind of input than for another: refuses all but `used`.
+void RequireUsedKeys(const Common& common, const UsedKeys& used, const std::string& for_what);
+
+/// What --part and --bin of a verb that reads a pile say, else the keys of the scenario; where a
+/// part replaces what the file says, that is told.
+PileOverrides GivenPile(const std::string& part, const std::string& bin, const Scenario& scenario,
+                        const Common& common);
 
 /// Scenario from the defaults of its profile, `files` in order, then --set and --seed. `profile`:
 /// what

@@ -14,8 +14,8 @@
 
 #include "models/base/disk/build_id.h"
 #include "models/base/error.h"
+#include "twin/app/command_line/suggest.h"
 #include "twin/app/common.h"
-#include "twin/app/suggest.h"
 
 namespace tubetwin {
 namespace {
@@ -50,8 +50,7 @@ int Run(int argc, char** argv) {
   AddConfigVerb(app, common);
   std::vector<std::string> words = HelpWords({argv + 1, argv + argc});
   const auto refuse = [](const std::string& why) {
-    std::fprintf(stderr, "tubetwin: %s\nTry `tubetwin help`, or `tubetwin help VERB`.\n",
-                 why.c_str());
+    Complain(why + "\nTry `tubetwin help`, or `tubetwin help VERB`.");
     return static_cast<int>(ErrorKind::kUsage);
   };
   // The parser's own words name neither verbs nor options.
@@ -64,12 +63,13 @@ int Run(int argc, char** argv) {
     const std::string why = MisspeltOption(app, words);
     return refuse(why.empty() ? e.what() : why);
   }
+  RefuseUnusedKeys(common.overrides, common.used_keys, common.verb);
   return common.action();
 }
 
 int RunAndTell(int argc, char** argv) {
   const auto fail = [](const Error& error) {
-    std::fprintf(stderr, "tubetwin: %s\n", error.what());
+    Complain(error.what());
     return static_cast<int>(error.kind());
   };
   try {
@@ -78,7 +78,7 @@ int RunAndTell(int argc, char** argv) {
     return fail(e);
   } catch (const std::exception& e) {
     if (const auto machine = MachineError(e)) return fail(*machine);
-    std::fprintf(stderr, "tubetwin: internal error: %s\n", e.what());
+    Complain(std::string("internal error: ") + e.what());
     return static_cast<int>(ErrorKind::kInternal);
   }
 }
@@ -111,8 +111,8 @@ int CloseOutput(int code) {
   if (whole) return code;
   // The library keeps no reason of what failed before: the next byte has the same.
   if (error == 0 && ::write(STDOUT_FILENO, "\n", 1) < 0) error = errno;
-  std::fprintf(stderr, "tubetwin: standard output cannot be written: %s\n",
-               error != 0 ? std::strerror(error) : "what was printed is not whole");
+  Complain(std::string("standard output cannot be written: ") +
+           (error != 0 ? std::strerror(error) : "what was printed is not whole"));
   return code == 0 ? static_cast<int>(ErrorKind::kIo) : code;
 }
 

@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -51,8 +50,8 @@ double ParseDuration(const std::string& text) {
 int MergeAndTell(const CampaignResult& result, const Common& common) {
   WriteMerged(result, common.out);
   const CampaignSummary summary = Summarize(result);
-  std::printf("%s", common.json ? (ToJson(summary).dump(2) + "\n").c_str()
-                                : SummaryText(summary, ManifestOf(result)).c_str());
+  Print("%s", common.json ? JsonText(ToJson(summary)).c_str()
+                          : SummaryText(summary, ManifestOf(result)).c_str());
   return 0;
 }
 
@@ -76,7 +75,7 @@ int RunVerb(const CampaignOptions& given, const Common& common) {
 
 int StatusVerb(const CampaignOptions& given, const Common& common) {
   const CampaignStatus status = ReadCampaignStatus(given.folders.front());
-  std::printf("%s", common.json ? (ToJson(status).dump(2) + "\n").c_str() : ToText(status).c_str());
+  Print("%s", common.json ? JsonText(ToJson(status)).c_str() : ToText(status).c_str());
   return 0;
 }
 
@@ -96,9 +95,9 @@ int ReportVerb(const CampaignOptions& given, const Common& common) {
                                   /*computing_times=*/true, given.head)
                : WriteCampaignReport(folder.string(), given.kept, file, given.head);
   if (common.json) {
-    std::printf("%s\n", Json{{"file", file}, {"bytes", bytes}}.dump(2).c_str());
+    PrintJson(Json{{"file", file}, {"bytes", bytes}});
   } else {
-    std::printf("%s\n", file.c_str());
+    Print("%s\n", file.c_str());
   }
   return 0;
 }
@@ -110,8 +109,7 @@ int CompareVerb(const CampaignOptions& given, const Common& common) {
       results.size() == 1 ? PairVariantsWithin(results[0]) : PairVariants(results[0], results[1]);
   const Comparison comparison = CompareVariants(pairs);
   if (!common.out.empty()) WriteJsonFile(ToJson(comparison), common.out);
-  std::printf("%s", common.json ? (ToJson(comparison).dump(2) + "\n").c_str()
-                                : CompareText(comparison).c_str());
+  Print("%s", common.json ? JsonText(ToJson(comparison)).c_str() : CompareText(comparison).c_str());
   return 0;
 }
 
@@ -149,7 +147,7 @@ void AddRun(CLI::App& campaign, Common& common) {
                   "Seconds that rounds in hand have to end after SIGTERM or SIGINT; default 20")
       ->check(CLI::Range(0.0, 86400.0))
       ->type_name("S");
-  AddCommonOptions(*run, common, "Folder of the campaign", true);
+  AddCommonOptions(*run, common, AllKeys(), "Folder of the campaign", true);
   run->callback(
       [given, &common] { common.action = [given, &common] { return RunVerb(*given, common); }; });
 }
@@ -164,7 +162,7 @@ void AddStatus(CLI::App& campaign, Common& common) {
       ->required()
       ->expected(1)
       ->type_name("DIR");
-  AddCommonOptions(*status, common, "", false);
+  AddCommonOptions(*status, common, UsedKeys(), "", false);
   status->callback(
       [seen, &common] { common.action = [seen, &common] { return StatusVerb(*seen, common); }; });
 }
@@ -180,7 +178,7 @@ void AddMerge(CLI::App& campaign, Common& common) {
   merge->add_option("folders", merged->folders, "Folders with shards")
       ->required()
       ->type_name("DIR...");
-  AddCommonOptions(*merge, common, "Folder of the result", true);
+  AddCommonOptions(*merge, common, UsedKeys(), "Folder of the result", true);
   merge->callback([merged, &common] {
     common.action = [merged, &common] { return MergeVerb(*merged, common); };
   });
@@ -206,7 +204,7 @@ void AddReport(CLI::App& campaign, Common& common) {
       ->type_name("DIR...");
   report->add_option("--title", page->head.title, "What stands over the page")->type_name("TEXT");
   report->add_option("--customer", page->head.customer, "Whom the page is for")->type_name("TEXT");
-  AddCommonOptions(*report, common, "The page's file; default DIR/report.html", false);
+  AddCommonOptions(*report, common, UsedKeys(), "The page's file; default DIR/report.html", false);
   report->callback(
       [page, &common] { common.action = [page, &common] { return ReportVerb(*page, common); }; });
 }
@@ -223,7 +221,7 @@ void AddCompare(CLI::App& campaign, Common& common) {
       ->required()
       ->expected(1, 2)
       ->type_name("A [B]");
-  AddCommonOptions(*compare, common, "Also write the comparison as JSON", false);
+  AddCommonOptions(*compare, common, UsedKeys(), "Also write the comparison as JSON", false);
   compare->callback(
       [pair, &common] { common.action = [pair, &common] { return CompareVerb(*pair, common); }; });
 }
@@ -234,10 +232,10 @@ void AddSchema(CLI::App& campaign, Common& common) {
                               "Example: tubetwin campaign schema > campaign.schema.json\n\n"
                               "JSON Schema of a campaign file; `tubetwin config schema` is that of "
                               "the scenario keys in set.");
-  AddCommonOptions(*schema, common, "", false);
+  AddCommonOptions(*schema, common, UsedKeys(), "", false);
   schema->callback([&common] {
     common.action = [] {
-      std::printf("%s\n", CampaignSchema().dump(2).c_str());
+      PrintJson(CampaignSchema());
       return 0;
     };
   });

@@ -1,5 +1,3 @@
-#include <cstdio>
-
 #include <CLI/CLI.hpp>
 
 #include "models/base/error.h"
@@ -22,9 +20,9 @@ int CheckConfig(const std::vector<std::string>& files, const Common& common) {
   std::vector<Finding> findings = cell;
   findings.insert(findings.end(), part.begin(), part.end());
   if (common.json) {
-    std::printf("%s\n", FindingsJson(findings).dump(2).c_str());
+    PrintJson(FindingsJson(findings));
   } else if (!common.quiet) {
-    std::printf("%s", FindingsTable(findings).c_str());
+    Print("%s", FindingsTable(findings).c_str());
   }
   RequirePossible(cell);
   RequirePossible(part, "the part", ErrorKind::kBadData);
@@ -39,11 +37,11 @@ int ShowModel(const std::string& name) {
   for (const char* folder : {"cells", "arms", "grippers", "wrists", "scanners"}) {
     const std::vector<std::string> names = ModelFileNames(folder);
     all.insert(all.end(), names.begin(), names.end());
-    if (name.empty()) std::printf("%-9s %s\n", folder, Join(names).c_str());
+    if (name.empty()) Print("%-9s %s\n", folder, Join(names).c_str());
     // ur10e is a cell and an arm: "arms/ur10e" says which.
     for (const std::string& known : names) {
       if (name != known && name != folder + ("/" + known)) continue;
-      std::printf("%s", OpenModelFile(folder, known, folder).text.c_str());
+      Print("%s", OpenModelFile(folder, known, folder).text.c_str());
       return 0;
     }
   }
@@ -62,7 +60,7 @@ void AddConfigVerb(CLI::App& app, Common& common) {
   auto files = std::make_shared<std::vector<std::string>>();
   CLI::App* check = config->add_subcommand("check", "Example: tubetwin config check my.toml");
   check->add_option("file", *files, "Scenario and cell files, later ones override");
-  AddCommonOptions(*check, common, "", false);
+  AddCommonOptions(*check, common, AllKeys(), "", false);
   check->callback([files, &common] {
     common.action = [files, &common] { return CheckConfig(*files, common); };
   });
@@ -74,18 +72,18 @@ void AddConfigVerb(CLI::App& app, Common& common) {
       "cell "
       "and an arm have one name, arms/NAME is the arm's.");
   shown->add_option("name", *model, "Name of a shipped file");
-  AddCommonOptions(*shown, common, "", false);
+  AddCommonOptions(*shown, common, UsedKeys(), "", false);
   shown->callback([model, &common] { common.action = [model] { return ShowModel(*model); }; });
   auto dumped = std::make_shared<std::vector<std::string>>();
   CLI::App* dump = config->add_subcommand("dump",
                                           "Example: tubetwin config dump my.toml\n\nEvery key "
                                           "with its value and meaning, as TOML.");
   dump->add_option("file", *dumped, "Scenario and cell files, later ones override");
-  AddCommonOptions(*dump, common, "", false);
+  AddCommonOptions(*dump, common, AllKeys(), "", false);
   dump->callback([dumped, &common] {
     common.action = [dumped, &common] {
       Scenario scenario = LoadScenario(*dumped, common);
-      std::printf("%s", WriteToml([&](ConfigVisitor& v) { scenario.Visit(v); }, true).c_str());
+      Print("%s", WriteToml([&](ConfigVisitor& v) { scenario.Visit(v); }, true).c_str());
       return 0;
     };
   });
@@ -96,15 +94,15 @@ void AddConfigVerb(CLI::App& app, Common& common) {
   auto kind = std::make_shared<std::string>();
   schema->add_option("--of", *kind, "Of a file that describes a cell, a device or a part")
       ->check(CLI::IsMember(ModelFileKinds()));
-  AddCommonOptions(*schema, common, "", false);
+  AddCommonOptions(*schema, common, UsedKeys(), "", false);
   schema->callback([kind, &common] {
     common.action = [kind] {
       if (!kind->empty()) {
-        std::printf("%s", ModelFileSchema(*kind).c_str());
+        Print("%s", ModelFileSchema(*kind).c_str());
         return 0;
       }
       Scenario scenario = ReadScenario(ConfigSource());
-      std::printf("%s\n", WriteConfigSchema([&](ConfigVisitor& v) { scenario.Visit(v); }).c_str());
+      Print("%s\n", WriteConfigSchema([&](ConfigVisitor& v) { scenario.Visit(v); }).c_str());
       return 0;
     };
   });

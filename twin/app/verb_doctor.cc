@@ -164,6 +164,7 @@ int Doctor(const std::string& cell_file, const Common& common) {
   std::vector<Examined> findings;
   bool impossible = false;
   if (cell_file.empty()) {
+    RequireUsedKeys(common, {}, "without --cell");
     findings = Examine();
   } else {
     const Scenario scenario = LoadScenario({cell_file}, common);
@@ -182,11 +183,11 @@ int Doctor(const std::string& cell_file, const Common& common) {
     missing += !f.fix.empty();
     json.push_back(Json{{"what", f.what}, {"state", f.state}, {"fix", f.fix}});
     if (!common.json) {
-      std::printf("%-26s %s%s%s\n", f.what.c_str(), f.state.c_str(),
-                  f.fix.empty() ? "" : "\n    fix: ", f.fix.c_str());
+      Print("%-26s %s%s%s\n", f.what.c_str(), f.state.c_str(),
+            f.fix.empty() ? "" : "\n    fix: ", f.fix.c_str());
     }
   }
-  if (common.json) std::printf("%s\n", json.dump(2).c_str());
+  if (common.json) PrintJson(json);
   if (impossible) return static_cast<int>(ErrorKind::kConfig);
   return missing == 0 ? 0 : static_cast<int>(ErrorKind::kDevice);
 }
@@ -235,12 +236,12 @@ int RunJog(const JogVerb& verb, const Common& common) {
   if (common.json) {
     Json joints = Json::array();
     for (const double angle : q) joints.push_back(Degrees(angle));
-    std::printf("%s\n", Json{{"joints_deg", joints}}.dump(2).c_str());
+    PrintJson(Json{{"joints_deg", joints}});
     return 0;
   }
-  std::printf("joints");
-  for (const double angle : q) std::printf(" %.3f", Degrees(angle));
-  std::printf(" degrees\n");
+  Print("joints");
+  for (const double angle : q) Print(" %.3f", Degrees(angle));
+  Print(" degrees\n");
   return 0;
 }
 
@@ -253,7 +254,8 @@ void AddDoctorVerb(CLI::App& app, Common& common) {
       "or, with a cell file, what each of its devices says. Moves nothing.");
   auto cell_file = std::make_shared<std::string>();
   verb->add_option("--cell", *cell_file, "Cell file (TOML): read its devices");
-  AddCommonOptions(*verb, common, "", false);
+  AddCommonOptions(*verb, common, {"cell", "calibration", "bin", "scan", "pile", "part", "rate"},
+                   "", false);
   verb->callback([cell_file, &common] {
     common.action = [cell_file, &common] { return Doctor(*cell_file, common); };
   });
@@ -269,7 +271,7 @@ void AddJogVerb(CLI::App& app, Common& common) {
   verb->add_option("--joint", jog->jog.joint, "1 (next to the base) to 6")->required();
   verb->add_option("--degrees", jog->jog.degrees, "-1 to 1")->capture_default_str();
   verb->add_flag("--yes", jog->yes, "Do not ask: whoever wrote it sees the arm");
-  AddCommonOptions(*verb, common, "", false);
+  AddCommonOptions(*verb, common, {"cell", "calibration", "rate"}, "", false);
   verb->callback(
       [jog, &common] { common.action = [jog, &common] { return RunJog(*jog, common); }; });
 }

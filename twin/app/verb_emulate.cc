@@ -1,5 +1,3 @@
-#include <cstdio>
-
 #include <CLI/CLI.hpp>
 
 #include "models/base/json.h"
@@ -38,18 +36,16 @@ int RunEmulate(const EmulateChoice& choice, const Common& common) {
   const EmulateResult result = Emulate(scenario, options);
   const double share = result.wall_s > 0.0 ? result.cell_s / result.wall_s : 0.0;
   if (common.json) {
-    std::printf("%s\n", Json{{"cell_s", result.cell_s},
-                             {"wall_s", result.wall_s},
-                             {"rate", scenario.rate},
-                             {"reached_rate", share},
-                             {"overruns", result.overruns},
-                             {"worst_lag_ms", 1e3 * result.worst_lag_s},
-                             {"stretched_s", result.stretched_s},
-                             {"faults", result.faults}}
-                            .dump(2)
-                            .c_str());
+    PrintJson(Json{{"cell_s", result.cell_s},
+                   {"wall_s", result.wall_s},
+                   {"rate", scenario.rate},
+                   {"reached_rate", share},
+                   {"overruns", result.overruns},
+                   {"worst_lag_ms", 1e3 * result.worst_lag_s},
+                   {"stretched_s", result.stretched_s},
+                   {"faults", result.faults}});
   } else {
-    std::printf(
+    Print(
         "%.1f s of the cell in %.1f s, %.2f times real time of %.2f asked; %d overruns, worst lag "
         "%.1f ms, clocks stretched by %.3f s; %d faults\n",
         result.cell_s, result.wall_s, share, scenario.rate, result.overruns,
@@ -79,7 +75,8 @@ void AddEmulateVerb(CLI::App& app, Common& common) {
   verb->add_option("--faults", choice->faults, "Fault script (TOML)")->type_name("F.toml");
   verb->add_option("--for", choice->for_s, "Ends after so many seconds of the cell's time")
       ->check(CLI::Range(0.0, 1e7));
-  AddCommonOptions(*verb, common, "Folder for cell.toml, scans and the log of events", true);
+  AddCommonOptions(*verb, common, AllKeys(), "Folder for cell.toml, scans and the log of events",
+                   true);
   verb->callback([choice, &common] {
     common.action = [choice, &common] { return RunEmulate(*choice, common); };
   });

@@ -49,9 +49,9 @@ struct PerceiveOptions {
 int PerceiveClouds(const PerceiveOptions& given, const Common& common) {
   if (!given.labelled.empty()) LabelledEnding(given.labelled);
   const Part part = LoadPart(given.input.part);
-  Bin bin;
-  if (!given.input.bin.empty()) bin.size_m = ParseBinSize(given.input.bin);
   const Scenario scenario = LoadScenario({}, common, given.input.profile);
+  Bin bin = ScenarioBin(scenario, std::nullopt);
+  if (!given.input.bin.empty()) bin.size_m = ParseBinSize(given.input.bin);
   StepTimer timer;
   ViewsOfFiles read = ReadViews(given.input, bin, common);
   std::vector<OrganizedCloud>& views = read.clouds;
@@ -91,7 +91,8 @@ void AddPerceiveVerb(CLI::App& app, Common& common) {
   verb->add_option("--labelled", given->labelled,
                    "Also write each point's tube, as PCD or PLY by the name's ending: the first "
                    "cloud here, others with _1, _2 ...");
-  AddCommonOptions(*verb, common, "tubes.json to write", true);
+  AddCommonOptions(*verb, common, {"profile", "bin", "perception", "cell.model"},
+                   "tubes.json to write", true);
   verb->callback([given, &common] {
     common.action = [given, &common] { return PerceiveClouds(*given, common); };
   });

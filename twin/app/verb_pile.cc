@@ -1,5 +1,3 @@
-#include <cstdio>
-
 #include <CLI/CLI.hpp>
 
 #include "models/base/error.h"
@@ -16,32 +14,33 @@ namespace tubetwin {
 namespace {
 
 struct PileOptions {
-  std::string file, part = "pvc_a", bin, units, arrangement = "dropped";
+  std::string file, part, bin, units, arrangement = "dropped";
   int count = 7;
 };
 
-PileOverrides Overrides(const PileOptions& options, bool part_given) {
-  PileOverrides out;
-  if (part_given) out.part = options.part;
-  if (!options.bin.empty()) out.bin_size_m = ParseBinSize(options.bin);
-  out.unit_m = MetresPer(options.units);
-  return out;
+Pile ReadPile(const PileOptions& options, const Common& common) {
+  PileOverrides given = GivenPile(options.part, options.bin, LoadScenario({}, common), common);
+  given.unit_m = MetresPer(options.units);
+  return LoadGivenPile(options.file, given);
 }
 
 int Generate(const PileOptions& options, const Common& common) {
   const Part part = LoadPart(options.part);
-  Bin bin;
+  const Scenario scenario = LoadScenario({}, common);
+  Bin bin = ScenarioBin(scenario, std::nullopt);
   if (!options.bin.empty()) bin.size_m = ParseBinSize(options.bin);
   RequirePossible({CheckFill(bin, part, options.count)});
-  const Scenario scenario = LoadScenario({}, common);
   const auto seed = static_cast<std::uint64_t>(scenario.seed);
   // The same draw as `run` makes, so that its start can be made alone.
   const RoundPhysics physics = ScenarioPhysics(scenario, part);
   const SettleResult made =
       GeneratePile(part, bin, options.count, options.arrangement, seed, physics);
   if (made.status != SettleStatus::kSettled) {
-    throw Error(ErrorKind::kInternal, std::string("no settled pile came out: ") +
-                                          ToString(made.status) + ", " + made.reason);
+    throw Error(ErrorKind::kBadData,
+                "no settled pile came out of " + std::to_string(options.count) + " " + part.name +
+                    ", " + options.arrangement + ": " + ToString(made.status) + ", " + made.reason +
+                    "; allowed: what comes to rest in the bin (fewer tubes, a larger "
+                    "bin)");
   }
   SavePile(made.pile, common.out);
   Say(common, std::to_string(made.pile.tubes.size()) + " tubes of " + part.name + " " +
@@ -50,8 +49,8 @@ int Generate(const PileOptions& options, const Common& common) {
   return 0;
 }
 
-int Show(const PileOptions& options, bool part_given, const Common& common) {
-  const Pile pile = LoadGivenPile(options.file, Overrides(options, part_given));
+int Show(const PileOptions& options, const Common& common) {
+  const Pile pile = ReadPile(options, common);
   const TubeScene scene = SceneOfPile(pile);
   if (common.json) {
     Json tubes = Json::array();
@@ -64,40 +63,36 @@ int Show(const PileOptions& options, bool part_given, const Common& common) {
                            {"over", tube.over},
                            {"under", tube.under}});
     }
-    std::printf("%s\n", Json{{"part", pile.part.name},
-                             {"bin", ToJson(pile.bin)},
-                             {"seed", pile.seed},
-                             {"settled", pile.settled},
-                             {"tubes", tubes}}
-                            .dump(2)
-                            .c_str());
+    PrintJson(Json{{"part", pile.part.name},
+                   {"bin", ToJson(pile.bin)},
+                   {"seed", pile.seed},
+                   {"settled", pile.settled},
+                   {"tubes", tubes}});
   } else {
-    std::printf("%zu tubes of %s, bin %s x %s x %s m, %s\n", pile.tubes.size(),
-                pile.part.name.c_str(), Number(pile.bin.size_m[0]).c_str(),
-                Number(pile.bin.size_m[1]).c_str(), Number(pile.bin.size_m[2]).c_str(),
-                pile.settled ? "settled" : "not settled");
-    std::printf("  id  class   length_m  under          over\n");
+    Print("%zu tubes of %s, bin %s x %s x %s m, %s\n", pile.tubes.size(), pile.part.name.c_str(),
+          Number(pile.bin.size_m[0]).c_str(), Number(pile.bin.size_m[1]).c_str(),
+          Number(pile.bin.size_m[2]).c_str(), pile.settled ? "settled" : "not settled");
+    Print("  id  class   length_m  under          over\n");
     for (const PerceivedTube& tube : scene.tubes) {
       std::vector<std::string> under, over;
       for (const int id : tube.under) under.push_back(std::to_string(id));
       for (const int id : tube.over) over.push_back(std::to_string(id));
-      std::printf("%4d  %-6s  %8.3f  %-13s  %s\n", tube.id, ToString(tube.tube_class),
-                  tube.length_m, Join(under, " ").c_str(), Join(over, " ").c_str());
+      Print("%4d  %-6s  %8.3f  %-13s  %s\n", tube.id, ToString(tube.tube_class), tube.length_m,
+            Join(under, " ").c_str(), Join(over, " ").c_str());
     }
   }
   if (!common.out.empty()) RenderPilePicture(pile, common.out);
   return 0;
 }
 
-/// The options of verbs that read a pile; returns --part.
-CLI::Option* AddReadOptions(CLI::App& verb, PileOptions& options) {
+/// The options of verbs that read a pile.
+void AddReadOptions(CLI::App& verb, PileOptions& options) {
   verb.add_option("file", options.file, "pile.json, CSV or the public set's text")->required();
-  CLI::Option* part = verb.add_option("--part", options.part, "Part name or part file");
+  verb.add_option("--part", options.part, "Part name or part file, in place of the pile's");
   verb.add_option("--bin", options.bin, "Inner size of the bin: long,short,wall in metres");
   verb.add_option("--units", options.units,
                   "Unit of CSV and text; default: what the header says, else metres")
       ->check(CLI::IsMember(LengthUnits()));
-  return part;
 }
 
 }  // namespace
@@ -119,35 +114,33 @@ void AddPileVerb(CLI::App& app, Common& common) {
   generate->add_option("--arrangement", made->arrangement, "How they are laid")
       ->check(CLI::IsMember({"dropped", "stirred", "threaded"}));
   generate->add_option("--bin", made->bin, "Inner size of the bin: long,short,wall in metres");
-  AddCommonOptions(*generate, common, "Pile file to write (pile.json)", true);
+  AddCommonOptions(*generate, common, {"seed", "bin", "physics", "cell.model"},
+                   "Pile file to write (pile.json)", true);
   generate->callback(
       [made, &common] { common.action = [made, &common] { return Generate(*made, common); }; });
 
   auto read = std::make_shared<PileOptions>();
-  CLI::App* import = pile->add_subcommand(
+  // Not `import`, which is a word of the language's modules.
+  CLI::App* taken = pile->add_subcommand(
       "import", "Example: tubetwin pile import A5_2.csv --bin 0.80,0.60,0.09 --out p.json");
-  CLI::Option* import_part = AddReadOptions(*import, *read);
-  AddCommonOptions(*import, common, "Pile file to write (pile.json)", true);
-  import->callback([read, import_part, &common] {
-    common.action = [read, import_part, &common] {
-      SavePile(LoadGivenPile(read->file, Overrides(*read, import_part->count() > 0)), common.out);
-  return 0;
-};
-}  // namespace tubetwin
-);
+  AddReadOptions(*taken, *read);
+  AddCommonOptions(*taken, common, PileKeysAnd({}), "Pile file to write (pile.json)", true);
+  taken->callback([read, &common] {
+    common.action = [read, &common] {
+      SavePile(ReadPile(*read, common), common.out);
+      return 0;
+    };
+  });
 
-auto shown = std::make_shared<PileOptions>();
-CLI::App* show = pile->add_subcommand(
-    "show",
-    "Example: tubetwin pile show p.json --out p.png\n\nPrints the tubes with their classes "
-    "by truth; with --out also draws them.");
-CLI::Option* show_part = AddReadOptions(*show, *shown);
-AddCommonOptions(*show, common, "Picture to write (PNG)", false);
-show->callback([shown, show_part, &common] {
-  common.action = [shown, show_part, &common] {
-    return Show(*shown, show_part->count() > 0, common);
-  };
-});
+  auto shown = std::make_shared<PileOptions>();
+  CLI::App* show = pile->add_subcommand(
+      "show",
+      "Example: tubetwin pile show p.json --out p.png\n\nPrints the tubes with their classes "
+      "by truth; with --out also draws them.");
+  AddReadOptions(*show, *shown);
+  AddCommonOptions(*show, common, PileKeysAnd({}), "Picture to write (PNG)", false);
+  show->callback(
+      [shown, &common] { common.action = [shown, &common] { return Show(*shown, common); }; });
 }
 
 }  // namespace tubetwin

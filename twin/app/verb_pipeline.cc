@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
@@ -68,11 +67,8 @@ std::vector<std::size_t> ChosenViews(const std::string& text, std::size_t count)
 }
 
 int ScanPile(const ScanOptions& scan, const Common& common) {
-  PileOverrides overrides;
-  if (!scan.part.empty()) overrides.part = scan.part;
-  if (!scan.bin.empty()) overrides.bin_size_m = ParseBinSize(scan.bin);
-  const Pile pile = LoadGivenPile(scan.pile, overrides);
   const Scenario scenario = LoadScenario({}, common);
+  const Pile pile = LoadGivenPile(scan.pile, GivenPile(scan.part, scan.bin, scenario, common));
   const std::uint64_t seed = static_cast<std::uint64_t>(scenario.seed);
   const RoundPhysics physics = ScenarioPhysics(scenario, pile.part);
   const CellModel model = ScenarioModel(scenario);
@@ -145,31 +141,9 @@ EvaluationRequest MakeRequest(const TubeScene& scene, const Pile& pile,
   return request;
 }
 
-/// Throws Error(kBadData) for a tube whose axis runs through the bin's floor or a wall.
-void RequireOutOfWalls(const Pile& pile, const std::string& file) {
-  const double t = Bin::kWallThickness_m;
-  for (const PileTube& tube : pile.tubes) {
-    for (const Vector3& p : Resample(tube.centerline_N, 0.005)) {
-      const double over_x = std::abs(p.x()) - pile.bin.half_x_m();
-      const double over_y = std::abs(p.y()) - pile.bin.half_y_m();
-      const bool above = over_x < 0.0 && over_y < 0.0;
-      const bool in_wall = over_x < t && over_y < t && p.z() < pile.bin.wall_m() && !above;
-      if (!in_wall && !(above && p.z() < 0.0)) continue;
-      throw Error(ErrorKind::kBadData, file + ": tube " + std::to_string(tube.id) +
-                                           ": its axis is inside the bin's " +
-                                           (in_wall ? "wall" : "floor") + " at (" + Number(p.x()) +
-                                           ", " + Number(p.y()) + ", " + Number(p.z()) + ") m");
-    }
-  }
-}
-
 int EvaluatePile(const EvaluateOptions& given, const Common& common) {
-  PileOverrides overrides;
-  if (!given.part.empty()) overrides.part = given.part;
-  if (!given.bin.empty()) overrides.bin_size_m = ParseBinSize(given.bin);
-  const Pile pile = LoadGivenPile(given.pile, overrides);
-  RequireOutOfWalls(pile, given.pile);
   const Scenario scenario = LoadScenario({}, common);
+  const Pile pile = LoadGivenPile(given.pile, GivenPile(given.part, given.bin, scenario, common));
   const TubeScene scene = SceneOfPile(pile);
   EvaluationRequest request = MakeRequest(scene, pile, given, scenario.planner);
   request.seed = static_cast<std::uint64_t>(scenario.seed);
@@ -179,13 +153,12 @@ int EvaluatePile(const EvaluateOptions& given, const Common& common) {
   const Json json = ToJson(result);
   WriteJsonFile(json, common.out);
   if (common.json) {
-    std::printf("%s\n", json.dump(2).c_str());
+    PrintJson(json);
   } else if (!common.quiet) {
-    std::printf("tube  motion      status    displacement_m  extra  cost\n");
+    Print("tube  motion      status    displacement_m  extra  cost\n");
     for (const CandidateScore& score : result.candidates) {
-      std::printf("%4d  %-10s  %-8s  %14.4f  %5.2f  %.4f\n", score.tube, score.motion.c_str(),
-                  ToString(score.status), score.displacement_m, score.extra_probability,
-                  score.cost);
+      Print("%4d  %-10s  %-8s  %14.4f  %5.2f  %.4f\n", score.tube, score.motion.c_str(),
+            ToString(score.status), score.displacement_m, score.extra_probability, score.cost);
     }
   }
   return 0;
@@ -205,7 +178,10 @@ void AddScanVerb(CLI::App& app, Common& common) {
   verb->add_option("--bin", given->bin, "Inner size of the bin: long,short,wall in metres");
   verb->add_flag("--labels", given->labels,
                  "Write each point's tube and the true pose, for scoring");
-  AddCommonOptions(*verb, common, "Folder for view_N.pcd and .ply", true);
+  AddCommonOptions(
+      *verb, common,
+      PileKeysAnd({"seed", "physics", "scan", "cell.model", "cell.scanner", "calibration"}),
+      "Folder for view_N.pcd and .ply", true);
   verb->callback(
       [given, &common] { common.action = [given, &common] { return ScanPile(*given, common); }; });
 }
@@ -225,7 +201,10 @@ void AddEvaluateVerb(CLI::App& app, Common& common) {
   verb->add_option("--samples", given->samples, "Roll-outs per candidate")
       ->check(CLI::Range(1, 1000));
   verb->add_flag("--full", given->full, "Nothing pruned or cut short");
-  AddCommonOptions(*verb, common, "scores.json to write", true);
+  AddCommonOptions(
+      *verb, common,
+      PileKeysAnd({"seed", "profile", "planner", "evaluator", "cell.model", "calibration"}),
+      "scores.json to write", true);
   verb->callback([given, &common] {
     common.action = [given, &common] { return EvaluatePile(*given, common); };
   });

@@ -1,5 +1,3 @@
-#include <cstdio>
-
 #include <CLI/CLI.hpp>
 
 #include "models/base/error.h"
@@ -19,6 +17,13 @@
 namespace tubetwin {
 namespace {
 
+// What is read of tubes.json needs no perception; its bin says where it stands.
+const UsedKeys kKeysOfScene = {"seed",      "profile", "bin",        "scan",       "planner",
+                               "evaluator", "cycle",   "cell.model", "calibration"};
+const UsedKeys kKeysOfSceneWithBin = {"seed",           "profile",    "bin.size_m", "bin.mesh",
+                                      "bin.mesh_units", "scan",       "planner",    "evaluator",
+                                      "cycle",          "cell.model", "calibration"};
+
 /// What is planned in: perceived tubes, and the points of the clouds where these are given.
 struct Seen {
   TubeScene scene;
@@ -27,7 +32,7 @@ struct Seen {
   std::vector<Vector3> points_N;
 };
 
-Seen ReadScene(const CloudInput& input, const Scenario& scenario) {
+Seen ReadScene(const CloudInput& input, const Scenario& scenario, const Common& common) {
   const std::string& file = input.clouds.front();
   if (!input.units.empty()) {
     throw Error(ErrorKind::kUsage, file + ": --units is for clouds; tubes.json is in metres");
@@ -46,8 +51,14 @@ Seen ReadScene(const CloudInput& input, const Scenario& scenario) {
   } else {
     throw Error(ErrorKind::kUsage, file + ": names no part; give --part");
   }
-  const auto bin = document.Optional("bin");
-  seen.bin = bin ? BinFromJson(*bin) : ScenarioBin(scenario, std::nullopt);
+  const bool has_bin = document.Optional("bin").has_value();
+  RequireUsedKeys(common, has_bin ? kKeysOfSceneWithBin : kKeysOfScene, "of tubes.json");
+  seen.bin = ScenarioBin(scenario, std::nullopt);
+  if (has_bin) {
+    const std::optional<std::array<double, 3>> asked_m = AskedOverrides(scenario).bin_size_m;
+    seen.bin = BinFromJson(document.Field("bin"));
+    if (asked_m) seen.bin.size_m = *asked_m;
+  }
   if (!input.bin.empty()) seen.bin.size_m = ParseBinSize(input.bin);
   return seen;
 }
@@ -76,22 +87,23 @@ PathStart AfterLooking(const MotionPlanner& planner, const Scenario& scenario, c
 void Report(const PlanResult& result, const std::optional<RunnablePlan>& chosen,
             const std::optional<Nudge>& nudge) {
   if (nudge) {
-    std::printf("no plan; tube %d would be nudged by %.0f mm; %zu rejections\n", nudge->tube,
-                1e3 * nudge->travel_m, result.rejections.size());
+    Print("no plan; tube %d would be nudged by %.0f mm; %zu rejections\n", nudge->tube,
+          1e3 * nudge->travel_m, result.rejections.size());
   } else if (!chosen) {
-    std::printf("no plan; %zu rejections\n", result.rejections.size());
+    Print("no plan; %zu rejections\n", result.rejections.size());
   } else {
     const PickPlan& best = result.plans[chosen->index];
-    std::printf("%zu plans; best: tube %d (%s) by %s, cost %.3f%s\n", result.plans.size(),
-                best.target, ToString(best.target_class), best.motion.name.c_str(), best.cost,
-                best.used_simulator ? ", simulated" : "");
+    Print("%zu plans; best: tube %d (%s) by %s, cost %.3f%s\n", result.plans.size(), best.target,
+          ToString(best.target_class), best.motion.name.c_str(), best.cost,
+          best.used_simulator ? ", simulated" : "");
   }
 }
 
 int Plan(const CloudInput& input, const Common& common) {
   const Scenario scenario = LoadScenario({}, common, input.profile);
   const bool one_scene = input.clouds.size() == 1 && input.clouds.front().ends_with(".json");
-  const Seen seen = one_scene ? ReadScene(input, scenario) : PerceiveScene(input, scenario, common);
+  const Seen seen =
+      one_scene ? ReadScene(input, scenario, common) : PerceiveScene(input, scenario, common);
   const CellModel model = ScenarioModel(scenario);
   const GripperGeometry gripper = MakeGripperGeometry(model);
   const MotionPlanner planner(model, seen.bin);
@@ -139,7 +151,10 @@ void AddPlanVerb(CLI::App& app, Common& common) {
       ->required();
   AddCloudOptions(*verb, *input)
       ->description("Part name or part file; default: what tubes.json names");
-  AddCommonOptions(*verb, common, "plan.json to write", true);
+  AddCommonOptions(*verb, common,
+                   {"seed", "profile", "bin", "perception", "scan", "planner", "evaluator", "cycle",
+                    "cell.model", "calibration"},
+                   "plan.json to write", true);
   verb->callback(
       [input, &common] { common.action = [input, &common] { return Plan(*input, common); }; });
 }

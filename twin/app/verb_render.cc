@@ -43,12 +43,19 @@ void HatchRow(const UnseenFloor& floor, int row, std::vector<Polyline>& lines_N)
   }
 }
 
-void RenderTubes(const RenderOptions& given, const Json& json, const std::string& out) {
+/// Puts the size that --bin or a key asks for in place of another.
+void AskedSize(const RenderOptions& given, const Common& common, Bin& bin) {
+  RequireUsedKeys(common, {"bin.size_m", "bin.mesh", "bin.mesh_units"}, "of what was seen");
+  const PileOverrides asked = GivenPile("", given.bin, LoadScenario({}, common), common);
+  if (asked.bin_size_m) bin.size_m = *asked.bin_size_m;
+}
+
+void RenderTubes(const RenderOptions& given, const Json& json, const Common& common) {
   const JsonView document(json, given.file);
   const TubeScene scene = TubeSceneFromJson(document);
   PerceivedPicture picture;
   if (const auto bin = document.Optional("bin")) picture.bin = BinFromJson(*bin);
-  if (!given.bin.empty()) picture.bin.size_m = ParseBinSize(given.bin);
+  AskedSize(given, common, picture.bin);
   for (const PerceivedTube& tube : scene.tubes) {
     picture.tubes.push_back({tube.id, tube.centerline_N, tube.node_visible, tube.radius_m,
                              static_cast<int>(tube.tube_class)});
@@ -63,11 +70,11 @@ void RenderTubes(const RenderOptions& given, const Json& json, const std::string
   picture.caption = std::to_string(scene.tubes.size()) + " tubes, " +
                     std::to_string(scene.crossings.size()) + " crossings, " +
                     std::to_string(scene.unexplained_N.size()) + " unexplained points" + unseen;
-  RenderPerceivedPicture(picture, out);
+  RenderPerceivedPicture(picture, common.out);
 }
 
 /// What one scan shows of the bin.
-void RenderCloud(const RenderOptions& given, const std::string& out) {
+void RenderCloud(const RenderOptions& given, const Common& common) {
   const OrganizedCloud cloud = ReadCloud(given.file, MetresPer(given.units));
   if (cloud.X_NS.matrix() == RigidTransform::Identity().matrix()) {
     throw Error(ErrorKind::kBadData,
@@ -77,13 +84,13 @@ void RenderCloud(const RenderOptions& given, const std::string& out) {
                     "tubes.json writes F.pcd with its pose)");
   }
   PerceivedPicture picture;
-  if (!given.bin.empty()) picture.bin.size_m = ParseBinSize(given.bin);
+  AskedSize(given, common, picture.bin);
   const auto valid = std::count_if(cloud.p_SP.begin(), cloud.p_SP.end(),
                                    [](const Eigen::Vector3f& p) { return IsValid(p); });
   picture.cloud_N = DownsampleForPicture({cloud}, picture.bin);
   picture.caption = std::to_string(cloud.width) + " x " + std::to_string(cloud.height) +
                     " points of a scan, " + std::to_string(valid) + " valid";
-  RenderPerceivedPicture(picture, out);
+  RenderPerceivedPicture(picture, common.out);
 }
 
 /// Whether a file is a cloud by its ending, packed or not.
@@ -107,9 +114,6 @@ int Render(const RenderOptions& given, const Common& common) {
     throw Error(ErrorKind::kUsage,
                 "--out '" + common.out + "': a name ending in .png or .mp4 is needed");
   }
-  if (!std::filesystem::exists(given.file)) {
-    throw Error(ErrorKind::kMissing, given.file + ": no such file");
-  }
   if (!given.units.empty() && !IsCloud(given.file)) {
     throw Error(ErrorKind::kUsage, given.file + ": --units is for clouds (.pcd, .ply)");
   }
@@ -120,13 +124,12 @@ int Render(const RenderOptions& given, const Common& common) {
                   given.file + ": a pile gives a picture; a film needs a recording");
     }
     if (const auto json = TubesJson(given.file)) {
-      RenderTubes(given, *json, common.out);
+      RenderTubes(given, *json, common);
       return 0;
     }
-    PileOverrides overrides;
-    if (!given.part.empty()) overrides.part = given.part;
-    if (!given.bin.empty()) overrides.bin_size_m = ParseBinSize(given.bin);
-    RenderPilePicture(LoadGivenPile(given.file, overrides), common.out);
+    const Scenario scenario = LoadScenario({}, common);
+    RenderPilePicture(LoadGivenPile(given.file, GivenPile(given.part, given.bin, scenario, common)),
+                      common.out);
     return 0;
   }
   if (IsCloud(given.file)) {
@@ -134,7 +137,7 @@ int Render(const RenderOptions& given, const Common& common) {
       throw Error(ErrorKind::kUsage,
                   given.file + ": a cloud gives a picture; a film needs a recording");
     }
-    RenderCloud(given, common.out);
+    RenderCloud(given, common);
     return 0;
   }
   const std::string advice = AdviceFor(given.file);
@@ -142,10 +145,14 @@ int Render(const RenderOptions& given, const Common& common) {
     throw Error(ErrorKind::kBadData,
                 given.file + ": is no recording, pile, tubes.json or cloud" + advice);
   }
+  RequireUsedKeys(common, {}, "of a recording");
   const Recording recording = ReadRecording(given.file);
   if (ending == ".mp4") {
     RenderFilm(recording, common.out, given.speed, common.parallelism());
     return 0;
+  }
+  if (recording.frames.empty()) {
+    throw Error(ErrorKind::kBadData, given.file + ": holds no frame; at least one is needed");
   }
   if (given.frame >= static_cast<int>(recording.frames.size())) {
     throw Error(ErrorKind::kUsage, "--frame " + std::to_string(given.frame) + ": " + given.file +
@@ -175,7 +182,7 @@ void AddRenderVerb(CLI::App& app, Common& common) {
   verb->add_option("--part", given->part, "Part name or part file of a pile");
   AddUnitsOption(*verb, given->units);
   verb->add_option("--bin", given->bin, "Inner size of the bin: long,short,wall in metres");
-  AddCommonOptions(*verb, common, "Picture (.png) or film (.mp4)", true);
+  AddCommonOptions(*verb, common, PileKeysAnd({}), "Picture (.png) or film (.mp4)", true);
   verb->callback(
       [given, &common] { common.action = [given, &common] { return Render(*given, common); }; });
 }

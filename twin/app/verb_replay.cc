@@ -52,20 +52,20 @@ Json ResultJson(const ReplayResult& result) {
 
 void Print(const ReplayResult& result) {
   const ReplayTally& tally = result.tally;
-  std::printf("%d attempts, %d placed (believed); %llu commands and %llu reads agree",
-              result.attempts, result.placed, static_cast<unsigned long long>(tally.commands),
-              static_cast<unsigned long long>(tally.reads));
+  Print("%d attempts, %d placed (believed); %llu commands and %llu reads agree", result.attempts,
+        result.placed, static_cast<unsigned long long>(tally.commands),
+        static_cast<unsigned long long>(tally.reads));
   if (tally.more_reads + tally.missing_reads > 0) {
-    std::printf(" (%llu reads were not recorded, %llu recorded ones not asked for)",
-                static_cast<unsigned long long>(tally.more_reads),
-                static_cast<unsigned long long>(tally.missing_reads));
+    Print(" (%llu reads were not recorded, %llu recorded ones not asked for)",
+          static_cast<unsigned long long>(tally.more_reads),
+          static_cast<unsigned long long>(tally.missing_reads));
   }
   if (tally.difference) {
-    std::printf("\nfirst difference %s\n", ToString(*tally.difference).c_str());
+    Print("\nfirst difference %s\n", ToString(*tally.difference).c_str());
   } else if (!result.complete) {
-    std::printf(", up to %.3f s, where the recording was cut short\n", Seconds(result.end));
+    Print(", up to %.3f s, where the recording was cut short\n", Seconds(result.end));
   } else {
-    std::printf(", to the end at %.3f s\n", Seconds(result.end));
+    Print(", to the end at %.3f s\n", Seconds(result.end));
   }
 }
 
@@ -73,9 +73,9 @@ int Replay(const ReplayVerb& given, const Common& common) {
   Json exported = nullptr;
   if (!given.mcap.empty()) {
     exported = Export(given);
-    if (!common.json) std::printf("%s: %s\n", given.mcap.c_str(), exported.dump().c_str());
+    if (!common.json) Print("%s: %s\n", given.mcap.c_str(), exported.dump().c_str());
     if (!given.verify) {
-      if (common.json) std::printf("%s\n", Json{{"mcap", exported}}.dump(2).c_str());
+      if (common.json) PrintJson(Json{{"mcap", exported}});
       return 0;
     }
   } else if (given.from_s || given.to_s) {
@@ -96,7 +96,7 @@ int Replay(const ReplayVerb& given, const Common& common) {
   if (common.json) {
     Json json = ResultJson(result);
     if (!exported.is_null()) json["mcap"] = exported;
-    std::printf("%s\n", json.dump(2).c_str());
+    PrintJson(json);
   } else {
     Print(result);
   }
@@ -122,7 +122,7 @@ void AddReplayVerb(CLI::App& app, Common& common) {
   verb->add_option("--cloud-step", given->cloud_step,
                    "Export every N-th row and column of clouds; 1: every point")
       ->check(CLI::Range(1, 100));
-  AddCommonOptions(*verb, common, "", false);
+  AddCommonOptions(*verb, common, UsedKeys(), "", false);
   verb->callback(
       [given, &common] { common.action = [given, &common] { return Replay(*given, common); }; });
 }

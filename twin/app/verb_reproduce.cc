@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -42,7 +41,7 @@ int RunVerb(const ReproduceOptions& given, const Common& common) {
   const std::string text = ReproductionText(tables);
   WriteJsonFile(ToJson(tables), (folder / "tables.json").string());
   WriteFileAtomically((folder / "tables.md").string(), text);
-  std::printf("%s", common.json ? (ToJson(tables).dump(2) + "\n").c_str() : text.c_str());
+  Print("%s", common.json ? JsonText(ToJson(tables)).c_str() : text.c_str());
   return 0;
 }
 
@@ -70,7 +69,7 @@ void AddReproduceVerb(CLI::App& app, Common& common) {
   verb->add_option("--jobs", given->jobs, "Rounds at a time; default: all cores")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  AddCommonOptions(*verb, common, "Folder of the campaign and its tables", true);
+  AddCommonOptions(*verb, common, AllKeys(), "Folder of the campaign and its tables", true);
   verb->callback(
       [given, &common] { common.action = [given, &common] { return RunVerb(*given, common); }; });
 }

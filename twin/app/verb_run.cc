@@ -81,7 +81,7 @@ Acknowledgement AskOperator(const std::string& what) {
   std::fprintf(stderr,
                "\ntubetwin: %s\nWhen the cause is gone and nobody is near the arm, type 'go on'; "
                "anything else ends the round: ",
-               what.c_str());
+               ForTerminal(what).c_str());
   std::string answer;
   std::getline(std::cin, answer);
   return answer == "go on" ? Acknowledgement::kGoOn : Acknowledgement::kEnd;
@@ -172,24 +172,23 @@ int Run(const RunOptions& run, const Common& common) {
   const RoundSummary& summary = result.record.summary;
   const Json told = RoundSummaryJson(result.record);
   if (common.json) {
-    std::printf("%s\n", told.dump(2).c_str());
+    PrintJson(told);
   } else if (!story.empty()) {
-    std::printf("%s\n", story.c_str());
+    Print("%s\n", story.c_str());
   } else {
-    std::printf("placed %d of %d in %d attempts, first attempt %d of %d, end: %s (%s)\n",
-                summary.placed, summary.tubes_start, summary.attempts, summary.first_attempt.k,
-                summary.first_attempt.n, summary.EndName().c_str(), summary.end_detail.c_str());
+    Print("placed %d of %d in %d attempts, first attempt %d of %d, end: %s (%s)\n", summary.placed,
+          summary.tubes_start, summary.attempts, summary.first_attempt.k, summary.first_attempt.n,
+          summary.EndName().c_str(), summary.end_detail.c_str());
   }
   if (result.faulted) {
-    std::fprintf(stderr, "tubetwin: the round ended with a fault: %s\n",
-                 summary.end_detail.c_str());
+    Complain("the round ended with a fault: " + summary.end_detail);
     return static_cast<int>(ErrorKind::kDevice);
   }
   if (result.interrupted && !run.dry) return static_cast<int>(ErrorKind::kInterrupted);
   int code = 0;
   for (const Requirement& wanted : requirements) {
     if (!Holds(wanted, told)) {
-      std::fprintf(stderr, "tubetwin: requirement '%s' does not hold\n", wanted.text.c_str());
+      Complain("requirement '" + wanted.text + "' does not hold");
       code = 1;
     }
   }
@@ -223,7 +222,7 @@ void AddRunVerb(CLI::App& app, Common& common) {
                  "Scan from where the scanner is, plan and check one attempt, send nothing; says "
                  "what was seen, what would be done and how near it comes to anything");
   verb->add_flag("--force", run->force, "Replace the rows of another configuration");
-  AddCommonOptions(*verb, common, "Result folder", true);
+  AddCommonOptions(*verb, common, AllKeys(), "Result folder", true);
   verb->callback([run, &common] { common.action = [run, &common] { return Run(*run, common); }; });
 }
 

@@ -9,6 +9,7 @@
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "models/base/json.h"
+#include "models/base/json_text.h"
 #include "models/base/random.h"
 #include "models/base/text.h"
 #include "scenes/engine/engine_error.h"
@@ -20,6 +21,8 @@
 namespace tubetwin {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr int kMostRounds = 1000000, kMostVariants = 1000;
 
 bool IsCampaignKey(const std::string& override_text) {
   const std::string first = override_text.substr(0, override_text.find_first_of(".= \t"));
@@ -48,7 +51,8 @@ void ReadInputs(CampaignVariant& variant, int rounds) {
   ScenarioVisuals(scenario);
   if (!scenario.pile.file.empty()) {
     Scenario first = scenario;
-    if (fs::is_directory(scenario.pile.file)) {
+    std::error_code unknown;  // Then it is read as a file, which says why.
+    if (fs::is_directory(scenario.pile.file, unknown)) {
       const std::vector<std::string> files = PileFilesOf(scenario);
       if (static_cast<int>(files.size()) < rounds) {
         throw Error(ErrorKind::kMissing, scenario.pile.file + ": holds " +
@@ -76,6 +80,10 @@ void AddVariants(ConfigSource table, const std::string& where,
   table.MoveKey("profile", keys, "profile");
   VariantKeys left;
   table.ReadInto(left);
+  if (!IsPlainUtf8(left.name)) {
+    throw Error(ErrorKind::kConfig, where + ": name is '" + Printable(left.name) +
+                                        "'; allowed: UTF-8 without control characters");
+  }
   Scenario any;
   std::vector<ConfigSource> grid = keys.ExpandLists([&any](ConfigVisitor& v) { any.Visit(v); });
   for (ConfigSource& point : grid) {
@@ -93,6 +101,18 @@ void AddVariants(ConfigSource table, const std::string& where,
     variant.name = VariantName(left.name, grid.size() == 1, point, variant);
     campaign.variants.push_back(std::move(variant));
   }
+}
+
+/// Every round of every variant is a task in memory, and its rows are later.
+void RequireFewRounds(const Campaign& campaign, const std::string& path) {
+  const std::size_t variants = campaign.variants.size();
+  const std::size_t all = variants * static_cast<std::size_t>(campaign.rounds);
+  if (variants <= std::size_t{kMostVariants} && all <= std::size_t{kMostRounds}) return;
+  throw Error(ErrorKind::kConfig,
+              path + ": " + std::to_string(variants) + " variants of " +
+                  std::to_string(campaign.rounds) + " rounds are " + std::to_string(all) +
+                  " rounds; allowed: " + std::to_string(kMostVariants) + " variants and " +
+                  std::to_string(kMostRounds) + " rounds in all");
 }
 
 /// The tables of variants; earlier campaign files call them arms.
@@ -196,8 +216,16 @@ Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& o
                     "[[variant]]\npart = \"pvc_a\"\ncount = 7");
   }
   for (std::size_t i = 0; i < tables.size(); ++i) {
-    AddVariants(std::move(tables[i]), path + ": variant " + std::to_string(i), for_variants,
-                campaign);
+    const std::string where = path + ": variant " + std::to_string(i);
+    try {
+      AddVariants(std::move(tables[i]), where, for_variants, campaign);
+    } catch (const Error& error) {
+      // A part or pile that is not there does not say who asked for it.
+      const std::string what = error.what();
+      if (what.starts_with(path) || what.starts_with("--set")) throw;
+      throw Error(error.kind(), where + ": " + what);
+    }
+    RequireFewRounds(campaign, path);
   }
   std::set<std::string> names;
   for (const CampaignVariant& variant : campaign.variants) {
@@ -242,7 +270,7 @@ CampaignIdentity IdentityFromJson(Json document, const std::string& source) {
   if (const auto build = view.Optional("build")) out.build = build->AsString();
   out.mujoco = view.Field("mujoco").AsString();
   out.seed = view.Field("seed").AsInteger();
-  out.rounds = static_cast<int>(view.Field("rounds").AsInteger());
+  out.rounds = IntegerIn(view.Field("rounds"), 1, kMostRounds);
   const JsonView variants = view.Field(version == 1 ? "arms" : "variants");
   for (std::size_t i = 0; i < variants.Size(); ++i) {
     out.variants.push_back(variants.Item(i).Field("name").AsString());

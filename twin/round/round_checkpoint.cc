@@ -35,7 +35,8 @@ std::optional<RoundCheckpoint> ReadRoundCheckpoint(const Scenario& scenario) {
 std::vector<std::string> PileFilesOf(const Scenario& scenario) {
   std::vector<std::string> files;
   const fs::path given(scenario.pile.file);
-  if (given.empty() || !fs::is_directory(given)) return files;
+  std::error_code unknown;  // Then it is read as a file, which says why.
+  if (given.empty() || !fs::is_directory(given, unknown)) return files;
   for (const auto& entry : fs::directory_iterator(given)) {
     if (entry.path().extension() == ".json") {
       files.push_back(entry.path().string());

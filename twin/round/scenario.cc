@@ -272,7 +272,7 @@ std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario) {
   return visuals;
 }
 
-Pile AskedPile(const Scenario& scenario) {
+PileOverrides AskedOverrides(const Scenario& scenario) {
   PileOverrides overrides;
   if (!scenario.pile.part.empty() || !scenario.part.name.empty()) {
     overrides.part = ScenarioPartName(scenario);
@@ -280,7 +280,11 @@ Pile AskedPile(const Scenario& scenario) {
   if (!scenario.bin.size_m.empty() || !scenario.bin.mesh.empty()) {
     overrides.bin_size_m = ScenarioBin(scenario, std::nullopt).size_m;
   }
-  Pile pile = LoadPile(scenario.pile.file, overrides);
+  return overrides;
+}
+
+Pile AskedPile(const Scenario& scenario) {
+  Pile pile = LoadPile(scenario.pile.file, AskedOverrides(scenario));
   pile.bin = ScenarioBin(scenario, pile.bin.size_m);
   return pile;
 }
@@ -293,8 +297,11 @@ Pile ScenarioPile(const Scenario& scenario) {
   SettleResult made = GeneratePile(part, bin, scenario.pile.count, scenario.pile.arrangement,
                                    static_cast<std::uint64_t>(scenario.seed), physics);
   if (made.status != SettleStatus::kSettled) {
-    throw Error(ErrorKind::kInternal, std::string("no settled pile could be generated: ") +
-                                          ToString(made.status) + ", " + made.reason);
+    throw Error(ErrorKind::kBadData,
+                "no settled pile could be generated of " + std::to_string(scenario.pile.count) +
+                    " " + part.name + ", " + scenario.pile.arrangement + ": " +
+                    ToString(made.status) + ", " + made.reason +
+                    "; allowed: what comes to rest in the bin (fewer tubes, a larger bin)");
   }
   return std::move(made.pile);
 }

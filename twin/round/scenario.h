@@ -104,13 +104,16 @@ Bin ScenarioBin(const Scenario& scenario, const std::optional<std::array<double,
 /// meshes than the arm has links.
 std::vector<Recording::Visual> ScenarioVisuals(const Scenario& scenario);
 
+/// What the scenario says of part and bin in place of a pile's file. Throws as ScenarioBin does.
+PileOverrides AskedOverrides(const Scenario& scenario);
+
 /// The pile of `scenario.pile.file` as it is, with the scenario's part and bin. Precondition: a
 /// file is given. Throws as LoadPile does.
 Pile AskedPile(const Scenario& scenario);
 
 /// The pile that the scenario asks for, not yet settled when it comes from a file; generated ones
 /// are. Throws as LoadPile and GeneratePile do, and
-/// Error(kInternal) when no settled pile could be generated.
+/// Error(kBadData) when no settled pile could be generated.
 Pile ScenarioPile(const Scenario& scenario);
 
 }  // namespace tubetwin

@@ -46,10 +46,11 @@ Pile LoadGivenPile(const std::string& file, const PileOverrides& overrides) {
   try {
     return LoadPile(file, overrides);
   } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kBadData) throw;  // A pipe would never be read to its end.
     const std::string ending = LowerCase(std::filesystem::path(file).extension().string());
     const bool pile =
         ending == ".csv" || ending == ".txt" || (ending == ".json" && !HoldsPerceivedTubes(file));
-    if (error.kind() != ErrorKind::kBadData || pile) throw;
+    if (pile) throw;
     throw Error(error.kind(), error.what() + AdviceFor(file));
   }
 }

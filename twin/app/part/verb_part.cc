@@ -21,14 +21,20 @@ namespace {
 
 /// One line a finding, and one for what to do.
 void Print(const Finding& finding) {
-  std::printf("%-10s  %s: %s; %s\n", ToString(finding.verdict), finding.what.c_str(),
-              finding.found.c_str(), finding.allowed.c_str());
-  if (!finding.remedy.empty()) std::printf("            -> %s\n", finding.remedy.c_str());
+  Print("%-10s  %s: %s; %s\n", ToString(finding.verdict), finding.what.c_str(),
+        finding.found.c_str(), finding.allowed.c_str());
+  if (!finding.remedy.empty()) Print("            -> %s\n", finding.remedy.c_str());
 }
 
-/// Names of files in it may be any bytes.
-void PrintJson(const Json& json) {
-  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+/// What a part is judged by (PartFitOf).
+UsedKeys PartKeys() {
+  return {"cell.model",
+          "scan.resolution",
+          "cycle.grip_force_N",
+          "cycle.transfer_acceleration_m_s2",
+          "physics.pad_friction",
+          "physics.wrench_noise_counts",
+          "physics.wrench_bias_walk_N"};
 }
 
 /// By the cell that --set asks for.
@@ -46,9 +52,9 @@ int CheckPart(const std::string& file, const Common& common) {
                {"verdict", ToString(worst)},
                {"findings", FindingsJson(findings)}});
   } else {
-    std::printf("%s: %s, radius %s m, length %s m, %s kg\n", part.name.c_str(), part.kind.c_str(),
-                Number(part.radius_m).c_str(), Number(part.length_m).c_str(),
-                Number(part.mass_kg).c_str());
+    Print("%s: %s, radius %s m, length %s m, %s kg\n", part.name.c_str(), part.kind.c_str(),
+          Number(part.radius_m).c_str(), Number(part.length_m).c_str(),
+          Number(part.mass_kg).c_str());
     for (const Finding& finding : findings) Print(finding);
   }
   return worst == Finding::Verdict::kImpossible ? static_cast<int>(ErrorKind::kBadData) : 0;
@@ -76,14 +82,13 @@ std::string Headline(const Part& part, const MeshTube& tube) {
 void PrintImported(const ImportedPart& imported, const MeshTube& tube,
                    const std::vector<Finding>& findings) {
   const Part& part = imported.part;
-  std::printf("%s, %zu nodes; %s\n", Headline(part, tube).c_str(), part.centerline_m.size() / 3,
-              ResidualText(tube).c_str());
-  std::printf("mass %s kg: %s\n", Number(part.mass_kg).c_str(), imported.mass_source.c_str());
+  Print("%s, %zu nodes; %s\n", Headline(part, tube).c_str(), part.centerline_m.size() / 3,
+        ResidualText(tube).c_str());
+  Print("mass %s kg: %s\n", Number(part.mass_kg).c_str(), imported.mass_source.c_str());
   if (part.is_hose()) {
-    std::printf(
-        "bending stiffness %s N m2, %s to %s: %s\n", Number(part.bending_stiffness_Nm2).c_str(),
-        Number(part.bending_stiffness_range_Nm2[0]).c_str(),
-        Number(part.bending_stiffness_range_Nm2[1]).c_str(), imported.stiffness_source.c_str());
+    Print("bending stiffness %s N m2, %s to %s: %s\n", Number(part.bending_stiffness_Nm2).c_str(),
+          Number(part.bending_stiffness_range_Nm2[0]).c_str(),
+          Number(part.bending_stiffness_range_Nm2[1]).c_str(), imported.stiffness_source.c_str());
   }
   for (const Finding& finding : findings) Print(finding);
 }
@@ -129,7 +134,7 @@ int Import(const PartImport& given, const Common& common) {
 
 void AddImport(CLI::App& part, Common& common) {
   auto given = std::make_shared<PartImport>();
-  CLI::App* import = part.add_subcommand(
+  CLI::App* verb = part.add_subcommand(
       "import",
       "Example: tubetwin part import my_tube.stl --units mm --out my_tube.toml\n"
       "Example: tubetwin part import my_hose.stl --units mm --material hose_b --mass 0.18 "
@@ -138,42 +143,35 @@ void AddImport(CLI::App& part, Common& common) {
       "(my_tube.png) beside it. What is no tube is refused with the reason. Friction is the\n"
       "material's: check it in the file. Clamp a hose level at an edge so that a length\n"
       "hangs over: how far its end sags gives the bending stiffness.");
-  import->add_option("mesh", given->mesh, "STL, OBJ or PLY file")->required();
-  import->add_option("--units", given->units, "Unit of the file; needed when metres cannot be")
+  verb->add_option("mesh", given->mesh, "STL, OBJ or PLY file")->required();
+  verb->add_option("--units", given->units, "Unit of the file; needed when metres cannot be")
       ->check(CLI::IsMember(LengthUnits()));
-  import->add_option("--name", given->name, "Name of the part; default: the file's");
-  import->add_option("--material", given->material,
-                     "Part (name or file) whose kind, friction, stiffness, density and colour it "
-                     "has; default pvc_a");
-  import->add_option("--mass", given->mass_kg, "Mass of one tube in kg; default: an estimate")
+  verb->add_option("--name", given->name, "Name of the part; default: the file's");
+  verb->add_option("--material", given->material,
+                   "Part (name or file) whose kind, friction, stiffness, density and colour it "
+                   "has; default pvc_a");
+  verb->add_option("--mass", given->mass_kg, "Mass of one tube in kg; default: an estimate")
       ->check(CLI::Range(kMinMass_kg, kMaxMass_kg));
-  import
-      ->add_option("--density", given->density_kg_m3,
+  verb->add_option("--density", given->density_kg_m3,
                    "Density in kg/m3, for the mass of what the mesh encloses or of --wall-mm")
       ->check(CLI::Range(10.0, 25000.0));
-  import->add_option("--wall-mm", given->wall_mm, "Thickness of the wall, where the mesh has none")
+  verb->add_option("--wall-mm", given->wall_mm, "Thickness of the wall, where the mesh has none")
       ->check(CLI::Range(0.01, 40.0));
-  import
-      ->add_option("--sag-mm", given->sag_mm,
+  verb->add_option("--sag-mm", given->sag_mm,
                    "How far the end of a hose sags, clamped level; once or twice")
       ->check(CLI::Range(0.1, 2000.0))
       ->allow_extra_args(false);
-  import
-      ->add_option("--overhang-m", given->overhang_m,
+  verb->add_option("--overhang-m", given->overhang_m,
                    "Length that hung over the edge; one for each --sag-mm")
       ->check(CLI::Range(0.02, 2.0))
       ->allow_extra_args(false);
-  import
-      ->add_option("--sag-error-mm", given->sag_error_mm,
+  verb->add_option("--sag-error-mm", given->sag_error_mm,
                    "By how much a sag may be misread; default 1")
       ->check(CLI::Range(0.01, 50.0));
-  AddCommonOptions(*import, common, "Part file to write (.toml)", true);
-  import->callback(
-      [given, &common] { common.action = [given, &common] { return Import(*given, common);
-};
-}  // namespace
-);
-}  // namespace tubetwin
+  AddCommonOptions(*verb, common, PartKeys(), "Part file to write (.toml)", true);
+  verb->callback(
+      [given, &common] { common.action = [given, &common] { return Import(*given, common); }; });
+}
 
 }  // namespace
 
@@ -189,7 +187,7 @@ void AddPartVerb(CLI::App& app, Common& common) {
       "wrist sensor and scanner make of it:\nok, doubtful or impossible (exit code 65), with the "
       "remedy.");
   check->add_option("part", *file, "Part file (TOML) or name")->required();
-  AddCommonOptions(*check, common, "", false);
+  AddCommonOptions(*check, common, PartKeys(), "", false);
   check->callback(
       [file, &common] { common.action = [file, &common] { return CheckPart(*file, common); }; });
   AddImport(*part, common);

@@ -17,6 +17,9 @@ struct NamedVerb {
 };
 NamedVerb VerbOf(const CLI::App& program, const std::vector<std::string>& words);
 
+/// "tubetwin campaign run".
+std::string FullName(const CLI::App& verb);
+
 /// What is wrong where a verb should stand, with the nearest: "no verb is called 'rnu'; nearest:
 /// 'run'; there are ...". Empty when a verb stands there, or none is needed.
 std::string MisspeltVerb(const CLI::App& program, const std::vector<std::string>& words);

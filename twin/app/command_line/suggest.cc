@@ -1,4 +1,4 @@
-#include "twin/app/suggest.h"
+#include "twin/app/command_line/suggest.h"
 
 #include <algorithm>
 
@@ -33,16 +33,16 @@ bool TakesValue(const CLI::App& verb, const std::string& name) {
   return option != nullptr && option->get_items_expected_max() > 0;
 }
 
-std::string FullName(const CLI::App& verb) {
-  const CLI::App* parent = verb.get_parent();
-  return parent == nullptr ? verb.get_name() : FullName(*parent) + " " + verb.get_name();
-}
-
 bool Knows(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace
+
+std::string FullName(const CLI::App& verb) {
+  const CLI::App* parent = verb.get_parent();
+  return parent == nullptr ? verb.get_name() : FullName(*parent) + " " + verb.get_name();
+}
 
 NamedVerb VerbOf(const CLI::App& program, const std::vector<std::string>& words) {
   NamedVerb out{&program, 0};

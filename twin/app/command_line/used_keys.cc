@@ -1,0 +1,53 @@
+#include "twin/app/command_line/used_keys.h"
+
+#include <algorithm>
+
+#include "models/base/error.h"
+#include "models/base/text.h"
+#include "twin/round/scenario.h"
+
+namespace tubetwin {
+namespace {
+
+bool Covers(const std::string& used, const std::string& key) {
+  return used.empty() || key == used || key.starts_with(used + ".");
+}
+
+std::string KeyOfOverride(const std::string& override_text) {
+  std::string key = override_text.substr(0, override_text.find('='));
+  key.erase(std::remove_if(key.begin(), key.end(), [](char c) { return c == ' ' || c == '\t'; }),
+            key.end());
+  return key;
+}
+
+}  // namespace
+
+const UsedKeys& AllKeys() {
+  static const UsedKeys all = {""};
+  return all;
+}
+
+UsedKeys PileKeysAnd(const UsedKeys& more) {
+  UsedKeys keys = {"bin.size_m", "bin.mesh", "bin.mesh_units", "pile.part", "part.name"};
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+
+void RefuseUnusedKeys(const std::vector<std::string>& overrides, const UsedKeys& used,
+                      const std::string& who) {
+  for (const std::string& text : overrides) {
+    const std::string key = KeyOfOverride(text);
+    if (std::any_of(used.begin(), used.end(),
+                    [&](const std::string& one) { return Covers(one, key); })) {
+      continue;  // Its reader checks it.
+    }
+    ConfigSource alone;
+    alone.AddOverride(text);
+    Scenario any;
+    alone.ReadInto(any);
+    throw Error(ErrorKind::kUsage, "--set " + key + ": `" + who + "` does not use this key; " +
+                                       (used.empty() ? "it uses none" : "it uses " + Join(used)));
+  }
+}
+
+}  // namespace tubetwin
