@@ -209,7 +209,7 @@ void RequireWord(const JogVerb& verb, const std::string& address) {
   std::fprintf(stderr,
                "Joint %d of the arm at %s will turn by %s degrees; nothing looks for collisions. "
                "When nobody is near, type 'move': ",
-               verb.jog.joint, address.c_str(), Number(verb.jog.degrees).c_str());
+               verb.jog.joint, ForTerminal(address).c_str(), Number(verb.jog.degrees).c_str());
   std::string answer;
   std::getline(std::cin, answer);
   if (answer != "move") throw Error(ErrorKind::kInterrupted, "jog: not moved");

@@ -50,7 +50,7 @@ Json ResultJson(const ReplayResult& result) {
   return json;
 }
 
-void Print(const ReplayResult& result) {
+void PrintResult(const ReplayResult& result) {
   const ReplayTally& tally = result.tally;
   Print("%d attempts, %d placed (believed); %llu commands and %llu reads agree", result.attempts,
         result.placed, static_cast<unsigned long long>(tally.commands),
@@ -98,7 +98,7 @@ int Replay(const ReplayVerb& given, const Common& common) {
     if (!exported.is_null()) json["mcap"] = exported;
     PrintJson(json);
   } else {
-    Print(result);
+    PrintResult(result);
   }
   return given.verify && result.tally.difference ? 1 : 0;
 }

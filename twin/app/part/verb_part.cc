@@ -20,7 +20,7 @@ namespace tubetwin {
 namespace {
 
 /// One line a finding, and one for what to do.
-void Print(const Finding& finding) {
+void PrintFinding(const Finding& finding) {
   Print("%-10s  %s: %s; %s\n", ToString(finding.verdict), finding.what.c_str(),
         finding.found.c_str(), finding.allowed.c_str());
   if (!finding.remedy.empty()) Print("            -> %s\n", finding.remedy.c_str());
@@ -55,7 +55,7 @@ int CheckPart(const std::string& file, const Common& common) {
     Print("%s: %s, radius %s m, length %s m, %s kg\n", part.name.c_str(), part.kind.c_str(),
           Number(part.radius_m).c_str(), Number(part.length_m).c_str(),
           Number(part.mass_kg).c_str());
-    for (const Finding& finding : findings) Print(finding);
+    for (const Finding& finding : findings) PrintFinding(finding);
   }
   return worst == Finding::Verdict::kImpossible ? static_cast<int>(ErrorKind::kBadData) : 0;
 }
@@ -90,7 +90,7 @@ void PrintImported(const ImportedPart& imported, const MeshTube& tube,
           Number(part.bending_stiffness_range_Nm2[0]).c_str(),
           Number(part.bending_stiffness_range_Nm2[1]).c_str(), imported.stiffness_source.c_str());
   }
-  for (const Finding& finding : findings) Print(finding);
+  for (const Finding& finding : findings) PrintFinding(finding);
 }
 
 int Import(const PartImport& given, const Common& common) {
