@@ -1,14 +1,8 @@
-// A decoder's fuzz target without a fuzzer: seeded mutations of the corpus, or the corpus as files.
-//   NAME_mutations COUNT [SEED]     COUNT mutated inputs
-//   NAME_mutations --corpus FOLDER  the inputs that mutations start from
+// Seeded damage to bytes: of messages, of files that hold no text.
 
-#include <cstdio>
-#include <cstdlib>
-#include <cstring>
+#include <algorithm>
 
-#include "models/base/files.h"
-#include "models/base/random.h"
-#include "tests/fuzz/byte_target.h"
+#include "tests/fuzz/mutations.h"
 
 namespace tubetwin {
 namespace {
@@ -46,31 +40,7 @@ std::string Mutated(std::string bytes, const std::string& other, RandomStream& s
   return bytes;
 }
 
-int Run(int argc, char** argv) {
-  const std::vector<std::string> corpus = ByteCorpus();
-  if (argc == 3 && std::strcmp(argv[1], "--corpus") == 0) {
-    for (std::size_t i = 0; i < corpus.size(); ++i) {
-      WriteFileAtomically(std::string(argv[2]) + "/" + std::to_string(i), corpus[i]);
-    }
-    return 0;
-  }
-  const int count = argc > 1 ? std::atoi(argv[1]) : 0;
-  if (count <= 0) {
-    std::fprintf(stderr, "usage: %s COUNT [SEED] | --corpus FOLDER\n", argv[0]);
-    return 64;
-  }
-  const auto seed = static_cast<std::uint64_t>(argc > 2 ? std::atoi(argv[2]) : 1);
-  const auto inputs = static_cast<std::uint32_t>(corpus.size());
-  for (const std::string& bytes : corpus) TryBytes(bytes);
-  for (int i = 0; i < count; ++i) {
-    RandomStream stream(seed, static_cast<std::uint64_t>(i), "byte mutation");
-    TryBytes(Mutated(corpus[stream.Index(inputs)], corpus[stream.Index(inputs)], stream));
-  }
-  std::printf("%d mutated inputs decoded or refused\n", count);
-  return 0;
-}
-
 }  // namespace
 }  // namespace tubetwin
 
-int main(int argc, char** argv) { return tubetwin::Run(argc, argv); }
+int main(int argc, char** argv) { return tubetwin::RunMutations(argc, argv, tubetwin::Mutated); }

@@ -3,6 +3,9 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "models/base/error.h"
 
 namespace tubetwin {
 
@@ -27,9 +30,11 @@ class MemoryFile {
   std::string folder_, path_;
 };
 
-/// Calls a reader. It may throw Error(kBadData), or Error(kMissing) for what the file names, in at
-/// most four lines of printable text that name `path`; anything else ends the process.
-void TryReader(const std::string& reader, const std::string& path,
-               const std::function<void()>& read);
+/// Calls a reader. It may throw an Error of an `allowed` kind, in at most four lines of printable
+/// text that name `source`; anything else, and more than 20 s, ends the process. Error(kMissing) is
+/// for what the file names.
+void TryReader(const std::string& reader, const std::string& source,
+               const std::function<void()>& read,
+               const std::vector<ErrorKind>& allowed = {ErrorKind::kBadData, ErrorKind::kMissing});
 
 }  // namespace tubetwin

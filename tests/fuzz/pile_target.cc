@@ -13,6 +13,9 @@ void TryBytes(std::string_view bytes) {
     const Pile pile = LoadPile(file.path());
     // What was read is a pile by every rule.
     ValidatePile(pile, file.path());
+    for (const PileTube& tube : pile.tubes) {
+      if (Length(tube.centerline_N) > 10.0) DieOf("pile reader", "a tube that no bin holds");
+    }
   });
 }
 
