@@ -199,6 +199,21 @@ TEST_CASE("bad syntax is an error with its place") {
   CHECK_THAT(ErrorOf("seed = 1\nseed = 2\n"), Catch::StartsWith("bad.toml:2:"));
 }
 
+TEST_CASE("a misprint where a key should begin is an error with its place") {
+  for (const char* text :
+       {"[=a]", "[[~a]]", "[.a]", "[a.]", "[a", "[", "[[a]", "a. = 1", "a.=", "= 1", "~a = 1",
+        "x = {=1}", "x = {~}", "x = {a.}", "x = [", "x =", "x = 'a"}) {
+    INFO(text);
+    try {
+      ConfigSource().AddText(text, "f.toml");
+      FAIL("not refused");
+    } catch (const Error& e) {
+      CHECK(e.kind() == ErrorKind::kConfig);
+      CHECK_THAT(e.what(), Catch::StartsWith("f.toml:1:"));
+    }
+  }
+}
+
 TEST_CASE("errors of overrides name the override") {
   CHECK(ErrorOfOverride("cell.arm.sped_m_per_s=1") ==
         "--set cell.arm.sped_m_per_s=1: cell.arm.sped_m_per_s: unknown key; the nearest known is "
@@ -222,6 +237,13 @@ TEST_CASE("an override that is no key=value is a usage error") {
       CHECK_THAT(e.what(), Catch::StartsWith(std::string("--set ") + text + ": "));
     }
   }
+  ConfigSource source;
+  CHECK_THROWS_WITH(source.AddOverride("a\xc1\x19=1"), Catch::StartsWith("--set a\\xC1\\x19=1: "));
+}
+
+TEST_CASE("odd bytes of a file are named in printable ones") {
+  CHECK_THAT(ErrorOf("seed = n\x19"), Catch::Contains("'n\\x19'"));
+  CHECK_THAT(ErrorOf("\"s\\u001bd\" = 1"), Catch::Contains("s\\x1Bd: unknown key"));
 }
 
 TEST_CASE("a missing configuration file is missing input and names the file") {

@@ -13,60 +13,19 @@ std::size_t Place(const std::string& text, RandomStream& stream) {
   return stream.Index(static_cast<std::uint32_t>(text.size() + 1));
 }
 
+/// Values that break careless readers.
+// clang-format off
+constexpr const char* kWords[] = {"-1", "0", "1", "2147483647", "2147483648", "4294967296",
+    "9223372036854775807", "18446744073709551616", "1e308", "-1e400", "nan", "-inf", "0x10",
+    "F", "U", "binary", "ascii", "double", "char", "list", "x", "label", "intensity", "element",
+    "property", "65536", "binary_compressed", "binary_big_endian", "1.#QNAN", "0,5", ";",
+    "vertex", "facet", "endfacet", "tube,index,x,y,z", "\"", "mm", "1e300", "1e-320", "-0.0",
+    "null", "true", "[]", "{}", "[[[[[[[[[[", "{\"a\":", "\"x\"", "\"a\\nb\"",
+    "\"\\u001b[31m\"", "1979-05-27", "\'\'\'", ""};
+// clang-format on
+
 /// Puts a value that breaks careless readers where a word stands.
 void ReplaceWord(std::string& text, RandomStream& stream) {
-  static const char* const kWords[] = {"-1",
-                                       "0",
-                                       "1",
-                                       "2147483647",
-                                       "2147483648",
-                                       "4294967296",
-                                       "9223372036854775807",
-                                       "18446744073709551616",
-                                       "1e308",
-                                       "-1e400",
-                                       "nan",
-                                       "-inf",
-                                       "0x10",
-                                       "F",
-                                       "U",
-                                       "binary",
-                                       "ascii",
-                                       "double",
-                                       "char",
-                                       "list",
-                                       "x",
-                                       "label",
-                                       "intensity",
-                                       "element",
-                                       "property",
-                                       "65536",
-                                       "binary_compressed",
-                                       "binary_big_endian",
-                                       "1.#QNAN",
-                                       "0,5",
-                                       ";",
-                                       "vertex",
-                                       "facet",
-                                       "endfacet",
-                                       "tube,index,x,y,z",
-                                       "\"",
-                                       "mm",
-                                       "1e300",
-                                       "1e-320",
-                                       "-0.0",
-                                       "null",
-                                       "true",
-                                       "[]",
-                                       "{}",
-                                       "[[[[[[[[[[",
-                                       "{\"a\":",
-                                       "\"x\"",
-                                       "\"a\\nb\"",
-                                       "\"\\u001b[31m\"",
-                                       "1979-05-27",
-                                       "\'\'\'",
-                                       ""};
   const std::size_t at = Place(text, stream);
   // Words as tables have them, or the tokens of JSON and TOML: much of a text still parses then.
   const char* const around = stream.Uniform() < 0.5 ? " \n" : " \t\n,:;=[]{}()";

@@ -271,7 +271,7 @@ TEST_CASE("a link to a folder of any name leads there, and is never read as a sc
   CHECK(LinkTo("//host/x") == "/host/x");
   const TemporaryFolder folder;
   const std::string round = folder / "javascript:alert(1);void(0)";
-  WriteRoundRecord(Round({Placed()}), round);
+  WriteRoundRecord(Whole(Round({Placed()})), round);
   WriteFileAtomically(round + "/video.mp4", "film");
   WriteRoundReport(round, folder / "r.html", false);
   CHECK_THAT(ReadFile(folder / "r.html"),

@@ -136,8 +136,11 @@ std::vector<Examined> ExamineCell(const Scenario& scenario) {
   std::vector<Examined> out;
   std::optional<JointVector> q;
   const auto arm = [&](const Arm& device) {
-    const ArmState state = device.State();
+    ArmState state = device.State();
     q = state.q;
+    // Motion that nobody commands from here is then that program's.
+    const std::string holder = DeviceLock::HolderOf(DeviceToOwn("arm", cell.arm));
+    if (!holder.empty() && state.mode == ArmMode::kIdle) state.fault = "in use by " + holder;
     return Examined{"", Said(state) + (cell.arm.armed ? ", armed in the cell file" : ""), ""};
   };
   Look("arm", cell.arm, "", context, arm, out);

@@ -139,7 +139,8 @@ struct NetftSensor::Impl {
       same = 0;
     }
     const bool stuck = ++same >= kStuckRecords && now - same_since >= kStuck;
-    newest.problem = stuck ? "the same counts for " + Number(Seconds(now - same_since)) +
+    newest.problem = stuck ? "the same counts for " +
+                                 Number(std::round(10.0 * Seconds(now - same_since)) / 10.0) +
                                  " s: the sensor is stuck, or somebody repeats what it said"
                            : "";
     newest.time = now;
