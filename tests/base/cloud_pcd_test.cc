@@ -173,6 +173,8 @@ TEST_CASE("Older versions of PCD and other spellings read as 0.7", "[unit]") {
   CheckTwoPoints("FIELDS x y z\r\n" + std::string(kFloats) + kPoints + "DATA binary\r\n" + kData);
   CheckBad("FIELDS x y z\nPOINTS 2\nDATA binary\n" + kData, "the header ends without a line SIZE");
   CheckBad("FIELDS x y z\n" + ascii, "the header ends without a line WIDTH or POINTS");
+  CheckBad("FIELDS x y z \xb3w\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS 1\nDATA ascii\n1 2 3\n",
+           "point 0, field '\\xB3w' is missing");
 }
 
 TEST_CASE("One of WIDTH, HEIGHT and POINTS may be missing", "[unit]") {

@@ -216,8 +216,8 @@ class AsciiReader {
   }
   [[noreturn]] void Fail(std::size_t point, const PcdField& field,
                          const std::string& problem) const {
-    throw Error(ErrorKind::kBadData, Place() + ": point " + std::to_string(point) + ", field '" +
-                                         field.name + "' " + problem);
+    throw Error(ErrorKind::kBadData, Place() + ": point " + std::to_string(point) + ", field " +
+                                         Quoted(field.name) + " " + problem);
   }
 
   CloudFile& file_;
