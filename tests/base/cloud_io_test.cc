@@ -56,7 +56,7 @@ void CheckSame(const OrganizedCloud& a, const OrganizedCloud& b) {
   CHECK(a.X_NS.isApprox(b.X_NS, kQuaternionRounding));
 }
 
-Error ErrorOf(const std::string& path) {
+Error CloudError(const std::string& path) {
   try {
     ReadCloud(path);
   } catch (const Error& error) {
@@ -66,8 +66,8 @@ Error ErrorOf(const std::string& path) {
   throw 0;
 }
 
-void CheckBad(const std::string& path, const std::string& text) {
-  const Error error = ErrorOf(path);
+void CheckBadFile(const std::string& path, const std::string& text) {
+  const Error error = CloudError(path);
   CHECK(error.kind() == ErrorKind::kBadData);
   CHECK_THAT(error.what(), Contains(path));
   CHECK_THAT(error.what(), Contains(text));
@@ -129,30 +129,30 @@ TEST_CASE("A header that claims 10^12 points is refused before memory is taken",
   const Folder folder;
   std::string text = Pcd("WIDTH 2\nHEIGHT 1", "WIDTH 1000000\nHEIGHT 1000000");
   text.replace(text.find("POINTS 2"), 8, "POINTS 1000000000000");
-  CheckBad(folder.Write("ascii.pcd", text), "POINTS 1000000000000");
+  CheckBadFile(folder.Write("ascii.pcd", text), "POINTS 1000000000000");
   text.replace(text.find("ascii"), 5, "binary");
-  CheckBad(folder.Write("binary.pcd", text), "POINTS 1000000000000 of 12 bytes each need more");
-  CheckBad(folder.Write("a.pcd", Pcd("WIDTH 2", "WIDTH 1000000000000")),
-           "a.pcd:7: WIDTH is '1000000000000', allowed are whole numbers from 1 to 2147483647");
-  CheckBad(folder.Write("a.ply",
-                        "ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\n"
-                        "property float x\nproperty float y\nproperty float z\nend_header\n"),
-           "1000000000000");
+  CheckBadFile(folder.Write("binary.pcd", text), "POINTS 1000000000000 of 12 bytes each need more");
+  CheckBadFile(folder.Write("a.pcd", Pcd("WIDTH 2", "WIDTH 1000000000000")),
+               "a.pcd:7: WIDTH is '1000000000000', allowed are whole numbers from 1 to 2147483647");
+  CheckBadFile(folder.Write("a.ply",
+                            "ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\n"
+                            "property float x\nproperty float y\nproperty float z\nend_header\n"),
+               "1000000000000");
 }
 
 TEST_CASE("Truncated data names the byte and what is missing", "[unit]") {
   const Folder folder;
   WritePcd(SomeCloud(40, 30, true, false), folder.File("whole.pcd"));
   const std::string whole = ReadFile(folder.File("whole.pcd"));
-  CheckBad(folder.Write("cut.pcd", whole.substr(0, whole.size() - 17)),
-           "POINTS 1200 of 16 bytes each need more than the 19183 bytes of data that follow");
-  CheckBad(folder.Write("head.pcd", whole.substr(0, 60)), "the file ends inside its header");
-  CheckBad(folder.Write("ascii.pcd", Pcd("0.4 0.5 nan\n", "0.4")),
-           "ascii.pcd:13: point 1, field 'y' is missing");
-  CheckBad(folder.Write("more.pcd", Pcd("nan\n", "nan\n7\n")), "data goes on");
+  CheckBadFile(folder.Write("cut.pcd", whole.substr(0, whole.size() - 17)),
+               "POINTS 1200 of 16 bytes each need more than the 19183 bytes of data that follow");
+  CheckBadFile(folder.Write("head.pcd", whole.substr(0, 60)), "the file ends inside its header");
+  CheckBadFile(folder.Write("ascii.pcd", Pcd("0.4 0.5 nan\n", "0.4")),
+               "ascii.pcd:13: point 1, field 'y' is missing");
+  CheckBadFile(folder.Write("more.pcd", Pcd("nan\n", "nan\n7\n")), "data goes on");
   WritePly(SomeCloud(40, 30, true, false), folder.File("whole.ply"));
   const std::string ply = ReadFile(folder.File("whole.ply"));
-  CheckBad(folder.Write("cut.ply", ply.substr(0, ply.size() - 200)), "bytes missing");
+  CheckBadFile(folder.Write("cut.ply", ply.substr(0, ply.size() - 200)), "bytes missing");
 }
 
 TEST_CASE("A bad PCD header names line, field, value and what is allowed", "[unit]") {
@@ -180,18 +180,19 @@ TEST_CASE("A bad PCD header names line, field, value and what is allowed", "[uni
   };
   for (const auto& c : cases) {
     INFO(c.from << " -> " << c.to);
-    CheckBad(folder.Write("a.pcd", Pcd(c.from, c.to)), c.text);
+    CheckBadFile(folder.Write("a.pcd", Pcd(c.from, c.to)), c.text);
   }
-  CheckBad(folder.Write("noise.pcd", std::string("\x01\x02\x03", 3)), "noise.pcd:1: the file ends");
-  CheckBad(folder.Write("empty.pcd", ""), "empty.pcd: is empty");
-  CheckBad(folder.Write("a.xyz", "1 2 3"), "the ending is '.xyz', allowed are .pcd, .ply");
+  CheckBadFile(folder.Write("noise.pcd", std::string("\x01\x02\x03", 3)),
+               "noise.pcd:1: the file ends");
+  CheckBadFile(folder.Write("empty.pcd", ""), "empty.pcd: is empty");
+  CheckBadFile(folder.Write("a.xyz", "1 2 3"), "the ending is '.xyz', allowed are .pcd, .ply");
 }
 
 TEST_CASE("A cloud file that is not there is missing, not bad", "[unit]") {
   const Folder folder;
-  CHECK(ErrorOf(folder.File("none.pcd")).kind() == ErrorKind::kMissing);
+  CHECK(CloudError(folder.File("none.pcd")).kind() == ErrorKind::kMissing);
   fs::create_directories(folder.path / "folder.pcd");
-  CHECK(ErrorOf(folder.File("folder.pcd")).kind() == ErrorKind::kMissing);
+  CHECK(CloudError(folder.File("folder.pcd")).kind() == ErrorKind::kMissing);
 }
 
 TEST_CASE("A PhoXi PLY is in millimetres and its points move into the camera's frame", "[unit]") {
@@ -213,7 +214,7 @@ TEST_CASE("A PhoXi PLY is in millimetres and its points move into the camera's f
   CHECK(cloud.X_NS.translation().isApprox(Vector3(0.1, 0, 0.5)));
   std::string mirrored = text;
   mirrored.replace(mirrored.find("1 0 0 0 -1 0 0 0 -1"), 19, "1 0 0 0 -1 0 0 0 +1");
-  CheckBad(folder.Write("b.ply", mirrored), "b.ply");
+  CheckBadFile(folder.Write("b.ply", mirrored), "b.ply");
 }
 
 TEST_CASE("An organised PLY carries PhoXi's elements in their order, its pinhole fits the points",
@@ -290,7 +291,7 @@ TEST_CASE("An unorganised PLY with other properties and faces is read as points"
   REQUIRE(cloud.size() == 3);
   CHECK(cloud.p_SP[2] == Eigen::Vector3f(0.3f, 0.01f, 0.5f));
   CHECK(cloud.X_NS.isApprox(RigidTransform::Identity()));
-  CheckBad(folder.Write("cut.ply", text.substr(0, text.size() - 13 - 20)), "cut.ply");
+  CheckBadFile(folder.Write("cut.ply", text.substr(0, text.size() - 13 - 20)), "cut.ply");
 }
 
 TEST_CASE("A whole PhoXi PLY in millimetres, every element, is read with its pose", "[unit]") {
@@ -352,8 +353,8 @@ TEST_CASE("Plain PLY is in metres; millimetres must be said, never guessed", "[u
            "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
            "10 20 442\n";
   };
-  CheckBad(folder.Write("a.ply", text("")), "the file is not in metres");
-  CheckBad(folder.Write("a.ply", text("comment units furlong\n")), "allowed are m, mm, cm, in");
+  CheckBadFile(folder.Write("a.ply", text("")), "the file is not in metres");
+  CheckBadFile(folder.Write("a.ply", text("comment units furlong\n")), "allowed are m, mm, cm, in");
   const OrganizedCloud cloud = ReadCloud(folder.Write("a.ply", text("comment units mm\n")));
   CHECK((cloud.p_SP[0] - Eigen::Vector3f(0.01f, 0.02f, 0.442f)).norm() < 1e-6f);
   CHECK_FALSE(cloud.organized());

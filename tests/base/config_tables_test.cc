@@ -7,7 +7,7 @@ namespace {
 
 using Catch::Matchers::Contains;
 
-struct Sample {
+struct TestCell {
   int views = 1;
   std::string driver = "a";
   std::vector<double> size_m = {1.0, 2.0};
@@ -29,9 +29,9 @@ ConfigSource Source(const std::string& toml) {
   return source;
 }
 
-std::vector<Sample> Expand(const std::string& toml) {
-  Sample any;
-  std::vector<Sample> out;
+std::vector<TestCell> Expand(const std::string& toml) {
+  TestCell any;
+  std::vector<TestCell> out;
   for (const ConfigSource& point :
        Source(toml).ExpandLists([&any](ConfigVisitor& v) { any.Visit(v); })) {
     point.ReadInto(out.emplace_back());
@@ -55,7 +55,7 @@ TEST_CASE("tables of a list become sources of their own and leave the rest") {
   ConfigSource source = Source("views = 3\n[[one]]\nviews = 4\n[[one]]\nviews = 5\n");
   const std::vector<ConfigSource> tables = source.TakeTables("one");
   REQUIRE(tables.size() == 2);
-  Sample whole, second;
+  TestCell whole, second;
   source.ReadInto(whole);  // An unknown key "one" would throw.
   tables[1].ReadInto(second);
   CHECK(whole.views == 3);
@@ -67,7 +67,7 @@ TEST_CASE("tables of a list become sources of their own and leave the rest") {
 TEST_CASE("a table's keys may be written with dots, in quotes or as tables") {
   ConfigSource source =
       Source("set = {views = 2, \"inner.share\" = 0.25}\nother = {inner.share = 0.75}\n");
-  Sample sample;
+  TestCell sample;
   source.TakeTable("set").ReadInto(sample);
   CHECK(sample.views == 2);
   CHECK(sample.inner.share == 0.25);
@@ -82,21 +82,21 @@ TEST_CASE("a moved key keeps its place in messages and is refused when it is the
   ConfigSource from = Source("part = 7\n"), to = Source("views = 2\n");
   from.MoveKey("part", to, "inner.share");
   from.MoveKey("absent", to, "inner.share");
-  Sample sample;
+  TestCell sample;
   CHECK_THAT(Refusal([&] { to.ReadInto(sample); }), Contains("f.toml:1:8: inner.share: is 7"));
   ConfigSource again = Source("part = 3\n");
   CHECK_THAT(Refusal([&] { again.MoveKey("part", to, "views"); }), Contains("given twice"));
 }
 
 TEST_CASE("lists where a key takes one value span a grid, lists of a list key do not") {
-  const std::vector<Sample> grid =
+  const std::vector<TestCell> grid =
       Expand("views = [2, 3]\nsize_m = [4.0, 5.0]\n[inner]\nshare = [0.0, 0.5, 1.0]\n");
   REQUIRE(grid.size() == 6);
   CHECK(grid[0].inner.share == 0.0);
   CHECK(grid[0].views == 2);
   CHECK(grid[1].views == 3);
   CHECK(grid[5].inner.share == 1.0);
-  for (const Sample& point : grid) CHECK(point.size_m == std::vector<double>{4.0, 5.0});
+  for (const TestCell& point : grid) CHECK(point.size_m == std::vector<double>{4.0, 5.0});
   CHECK(Expand("size_m = [[1.0], [2.0, 3.0]]\n").at(1).size_m == std::vector<double>{2.0, 3.0});
   CHECK(Expand("views = 2\n").size() == 1);
   CHECK_THAT(Refusal([] { Expand("views = []\n"); }), Contains("empty list"));

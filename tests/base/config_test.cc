@@ -58,7 +58,7 @@ SampleConfig ReadText(const std::string& toml) {
 }
 
 /// The message of the configuration error that `toml` causes.
-std::string ErrorOf(const std::string& toml) {
+std::string ConfigError(const std::string& toml) {
   try {
     ReadText(toml);
   } catch (const Error& e) {
@@ -68,7 +68,7 @@ std::string ErrorOf(const std::string& toml) {
   return "no error";
 }
 
-std::string ErrorOfOverride(const std::string& text) {
+std::string OverrideError(const std::string& text) {
   try {
     ConfigSource source;
     source.AddText("[cell.arm]\nspeed_m_per_s = 0.5\n", "good.toml");
@@ -143,60 +143,61 @@ TEST_CASE("an override of a text may look like a number, a truth value or a date
 }
 
 TEST_CASE("an unknown key is an error with its place and the nearest name") {
-  CHECK(ErrorOf("seed = 2\nviewz = 3\n") ==
+  CHECK(ConfigError("seed = 2\nviewz = 3\n") ==
         "bad.toml:2:1: viewz: unknown key; the nearest known is 'views'");
-  CHECK(ErrorOf("[cell.arm]\n  drive = 'twin'\n") ==
+  CHECK(ConfigError("[cell.arm]\n  drive = 'twin'\n") ==
         "bad.toml:2:3: cell.arm.drive: unknown key; the nearest known is 'cell.arm.driver'");
-  CHECK(ErrorOf("[cell.army]\n") ==
+  CHECK(ConfigError("[cell.army]\n") ==
         "bad.toml:1:7: cell.army: unknown key; the nearest known is 'cell.arm'");
 }
 
 TEST_CASE("a key in the wrong table is told where it belongs") {
-  CHECK(ErrorOf("driver = 'twin'\n") ==
+  CHECK(ConfigError("driver = 'twin'\n") ==
         "bad.toml:1:1: driver: unknown key; there is 'cell.arm.driver'");
 }
 
 TEST_CASE("a value of the wrong type is an error with its place") {
-  CHECK(ErrorOf("views = 'many'\n") ==
+  CHECK(ConfigError("views = 'many'\n") ==
         "bad.toml:1:9: views: a whole number is needed, found the text \"many\"");
-  CHECK(ErrorOf("views = 3.0\n") ==
+  CHECK(ConfigError("views = 3.0\n") ==
         "bad.toml:1:9: views: a whole number is needed, found the real number 3");
-  CHECK(ErrorOf("exclude_free = 1\n") ==
+  CHECK(ConfigError("exclude_free = 1\n") ==
         "bad.toml:1:16: exclude_free: true or false is needed, found 1");
-  CHECK(ErrorOf("gain = true\n") == "bad.toml:1:8: gain: a number is needed, found true");
-  CHECK(ErrorOf("gain = nan\n") == "bad.toml:1:8: gain: a finite number is needed, found nan");
-  CHECK(ErrorOf("part = 5\n") == "bad.toml:1:8: part: a text is needed, found 5");
-  CHECK(ErrorOf("part = 2020-01-01\n") ==
+  CHECK(ConfigError("gain = true\n") == "bad.toml:1:8: gain: a number is needed, found true");
+  CHECK(ConfigError("gain = nan\n") == "bad.toml:1:8: gain: a finite number is needed, found nan");
+  CHECK(ConfigError("part = 5\n") == "bad.toml:1:8: part: a text is needed, found 5");
+  CHECK(ConfigError("part = 2020-01-01\n") ==
         "bad.toml:1:8: part: a text is needed, found a date or time");
-  CHECK(ErrorOf("pulses = 5\n") == "bad.toml:1:10: pulses: a list of numbers is needed, found 5");
-  CHECK(ErrorOf("files = ['a', 7]\n") == "bad.toml:1:15: files[1]: a text is needed, found 7");
-  CHECK(ErrorOf("cell = 5\n") == "bad.toml:1:8: cell: a table is needed, found 5");
-  CHECK(ErrorOf("[gain]\nx = 1\n") == "bad.toml:1:1: gain: a number is needed, found a table");
+  CHECK(ConfigError("pulses = 5\n") ==
+        "bad.toml:1:10: pulses: a list of numbers is needed, found 5");
+  CHECK(ConfigError("files = ['a', 7]\n") == "bad.toml:1:15: files[1]: a text is needed, found 7");
+  CHECK(ConfigError("cell = 5\n") == "bad.toml:1:8: cell: a table is needed, found 5");
+  CHECK(ConfigError("[gain]\nx = 1\n") == "bad.toml:1:1: gain: a number is needed, found a table");
 }
 
 TEST_CASE("a value outside its range is an error with its place and what is allowed") {
-  CHECK(ErrorOf("views = 65\n") == "bad.toml:1:9: views: is 65, allowed is 1 to 64");
-  CHECK(ErrorOf("cell.arm.speed_m_per_s = -0.5\n") ==
+  CHECK(ConfigError("views = 65\n") == "bad.toml:1:9: views: is 65, allowed is 1 to 64");
+  CHECK(ConfigError("cell.arm.speed_m_per_s = -0.5\n") ==
         "bad.toml:1:26: cell.arm.speed_m_per_s: is -0.5, allowed is 0 to 1");
-  CHECK(ErrorOf("bin.size_m = [0.8, 0.6, 7]\n") ==
+  CHECK(ConfigError("bin.size_m = [0.8, 0.6, 7]\n") ==
         "bad.toml:1:25: bin.size_m[2]: is 7, allowed is 0.01 to 2");
 }
 
 TEST_CASE("a list of the wrong length is an error with its place") {
-  CHECK(ErrorOf("bin.size_m = [0.8, 0.6]\n") ==
+  CHECK(ConfigError("bin.size_m = [0.8, 0.6]\n") ==
         "bad.toml:1:14: bin.size_m: 3 numbers are needed, found 2");
 }
 
 TEST_CASE("a wrong choice is an error that lists the choices") {
-  CHECK(ErrorOf("[cell.arm]\ndriver = 'twim'\n") ==
+  CHECK(ConfigError("[cell.arm]\ndriver = 'twim'\n") ==
         "bad.toml:2:10: cell.arm.driver: is \"twim\", allowed are twin, simple_message, replay; "
         "the nearest is 'twin'");
 }
 
 TEST_CASE("bad syntax is an error with its place") {
-  CHECK_THAT(ErrorOf("seed = 1\nviews = = 2\n"),
+  CHECK_THAT(ConfigError("seed = 1\nviews = = 2\n"),
              Catch::StartsWith("bad.toml:2:9: not valid TOML: "));
-  CHECK_THAT(ErrorOf("seed = 1\nseed = 2\n"), Catch::StartsWith("bad.toml:2:"));
+  CHECK_THAT(ConfigError("seed = 1\nseed = 2\n"), Catch::StartsWith("bad.toml:2:"));
 }
 
 TEST_CASE("a misprint where a key should begin is an error with its place") {
@@ -215,14 +216,14 @@ TEST_CASE("a misprint where a key should begin is an error with its place") {
 }
 
 TEST_CASE("errors of overrides name the override") {
-  CHECK(ErrorOfOverride("cell.arm.sped_m_per_s=1") ==
+  CHECK(OverrideError("cell.arm.sped_m_per_s=1") ==
         "--set cell.arm.sped_m_per_s=1: cell.arm.sped_m_per_s: unknown key; the nearest known is "
         "'cell.arm.speed_m_per_s'");
-  CHECK(ErrorOfOverride("views=0") == "--set views=0: views: is 0, allowed is 1 to 64");
-  CHECK(ErrorOfOverride("views=") ==
+  CHECK(OverrideError("views=0") == "--set views=0: views: is 0, allowed is 1 to 64");
+  CHECK(OverrideError("views=") ==
         "--set views=: views: a whole number is needed, found the text \"\"");
-  CHECK(ErrorOfOverride("cell.arm=5") == "--set cell.arm=5: cell.arm: a table is needed, found 5");
-  CHECK(ErrorOfOverride("seed.x=5") ==
+  CHECK(OverrideError("cell.arm=5") == "--set cell.arm=5: cell.arm: a table is needed, found 5");
+  CHECK(OverrideError("seed.x=5") ==
         "--set seed.x=5: seed: a whole number is needed, found a table");
 }
 
@@ -242,8 +243,8 @@ TEST_CASE("an override that is no key=value is a usage error") {
 }
 
 TEST_CASE("odd bytes of a file are named in printable ones") {
-  CHECK_THAT(ErrorOf("seed = n\x19"), Catch::Contains("'n\\x19'"));
-  CHECK_THAT(ErrorOf("\"s\\u001bd\" = 1"), Catch::Contains("s\\x1Bd: unknown key"));
+  CHECK_THAT(ConfigError("seed = n\x19"), Catch::Contains("'n\\x19'"));
+  CHECK_THAT(ConfigError("\"s\\u001bd\" = 1"), Catch::Contains("s\\x1Bd: unknown key"));
 }
 
 TEST_CASE("a missing configuration file is missing input and names the file") {

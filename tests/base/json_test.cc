@@ -11,7 +11,7 @@
 namespace tubetwin {
 namespace {
 
-std::string ErrorOf(const std::function<void()>& action) {
+std::string JsonError(const std::function<void()>& action) {
   try {
     action();
   } catch (const Error& e) {
@@ -28,22 +28,22 @@ TEST_CASE("errors in a document name file, path, value and what is needed") {
                                     "flag": 1, "line": [[0, 1, 2], [0, 1]], "big": 18446744073709551615})");
   const JsonView view(json, "pile.json");
   const JsonView tubes = view.Field("tubes");
-  CHECK(ErrorOf([&] { tubes.Item(1).Field("id").AsInteger(); }) ==
+  CHECK(JsonError([&] { tubes.Item(1).Field("id").AsInteger(); }) ==
         "pile.json: tubes[1].id: a whole number is needed, found \"two\"");
-  CHECK(ErrorOf([&] { tubes.Item(0).Field("radius"); }) ==
+  CHECK(JsonError([&] { tubes.Item(0).Field("radius"); }) ==
         "pile.json: tubes[0]: field 'radius' is missing (nearest present: 'radius_m')");
-  CHECK(ErrorOf([&] { tubes.Item(2); }) == "pile.json: tubes: has no item 2");
-  CHECK(ErrorOf([&] { tubes.Item(0).Field("radius_m").AsNumber(0.02, 0.5); }) ==
+  CHECK(JsonError([&] { tubes.Item(2); }) == "pile.json: tubes: has no item 2");
+  CHECK(JsonError([&] { tubes.Item(0).Field("radius_m").AsNumber(0.02, 0.5); }) ==
         "pile.json: tubes[0].radius_m: is 0.01, allowed are 0.02 to 0.5");
-  CHECK(ErrorOf([&] { view.Field("flag").AsBool(); }) ==
+  CHECK(JsonError([&] { view.Field("flag").AsBool(); }) ==
         "pile.json: flag: true or false is needed, found 1");
-  CHECK(ErrorOf([&] { view.Field("big").AsInteger(); }) ==
+  CHECK(JsonError([&] { view.Field("big").AsInteger(); }) ==
         "pile.json: big: a whole number below 2^63 is needed, found 18446744073709551615");
-  CHECK(ErrorOf([&] { view.Field("line").AsPolyline(); }) ==
+  CHECK(JsonError([&] { view.Field("line").AsPolyline(); }) ==
         "pile.json: line[1]: three numbers are needed, found 2");
-  CHECK(ErrorOf([&] { view.Field("flag").Size(); }) ==
+  CHECK(JsonError([&] { view.Field("flag").Size(); }) ==
         "pile.json: flag: a list is needed, found number");
-  CHECK(ErrorOf([&] { view.Field("flag").Field("x"); }) ==
+  CHECK(JsonError([&] { view.Field("flag").Field("x"); }) ==
         "pile.json: flag: an object is needed, found number");
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("an absent or null optional field is nothing, a present one is read") 
 
 TEST_CASE("a schema line of another kind or version is refused") {
   const Json json = {{"schema", "tubetwin/pile/2"}};
-  CHECK(ErrorOf([&] { RequireSchema(JsonView(json, "f"), "pile"); }) ==
+  CHECK(JsonError([&] { RequireSchema(JsonView(json, "f"), "pile"); }) ==
         "f: schema is 'tubetwin/pile/2', 'tubetwin/pile/1' is needed here");
   const Json good = {{"schema", "tubetwin/pile/1"}};
   CHECK_NOTHROW(RequireSchema(JsonView(good, "f"), "pile"));
@@ -66,10 +66,10 @@ TEST_CASE("a schema line of another kind or version is refused") {
 TEST_CASE("broken JSON names the file and the byte") {
   const TemporaryFolder folder;
   WriteFileAtomically(folder / "a.json", "{\"a\": 1,, }");
-  CHECK(ErrorOf([&] { ReadJsonFile(folder / "a.json"); }) ==
+  CHECK(JsonError([&] { ReadJsonFile(folder / "a.json"); }) ==
         (folder / "a.json") + ": not valid JSON at byte 9 of 11");
   WriteFileAtomically(folder / "a.json", "[1e999]");
-  CHECK(ErrorOf([&] { ReadJsonFile(folder / "a.json"); }) ==
+  CHECK(JsonError([&] { ReadJsonFile(folder / "a.json"); }) ==
         (folder / "a.json") + ": holds a number too large for any field");
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("a pose survives JSON and a quaternion that is none is refused") {
   const Json json = ToJson(X_AB);
   CHECK(TransformFromJson(JsonView(json, "f")).isApprox(X_AB, 1e-15));
   const Json bad = {{"p_m", {0, 0, 0}}, {"q_wxyz", {1, 1, 0, 0}}};
-  CHECK_THAT(ErrorOf([&] { TransformFromJson(JsonView(bad, "f")); }),
+  CHECK_THAT(JsonError([&] { TransformFromJson(JsonView(bad, "f")); }),
              Catch::StartsWith("f: q_wxyz: is no unit quaternion"));
 }
 
