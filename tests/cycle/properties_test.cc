@@ -8,6 +8,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/fake_round.h"
 #include "tests/support/planning.h"
+#include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
 namespace {
@@ -17,8 +18,6 @@ using test::FakeRound;
 using test::FakeWorld;
 using test::MotionKind;
 using test::TwoTubes;
-
-constexpr double kRadius = 0.0125;
 
 /// Straight tubes anywhere in the small bin, in layers, so that they cross without meeting.
 std::vector<Polyline> Pile(RandomStream& stream, int count) {

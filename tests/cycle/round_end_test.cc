@@ -4,6 +4,7 @@
 
 #include "tests/support/catch.h"
 #include "tests/support/fake_round.h"
+#include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
 namespace {
@@ -13,8 +14,6 @@ using test::FakeTube;
 using test::FakeWorld;
 using test::MotionKind;
 using test::TwoTubes;
-
-constexpr double kRadius = 0.0125;
 
 /// A tube along a wall of the small bin: no finger fits between them.
 Polyline AtTheWall() {

@@ -23,8 +23,6 @@ MotionSet MakeHop(const ExtractionInput& input) {
 const ExtractionMotion kHop = {"hop", ExtractionMotion::Tier::kFirst, MakeHop};
 // [example]
 
-constexpr double kRadius = 0.0125;
-
 TEST_CASE("Example: a motion of one's own is asked about, chosen and can be run", "[unit]") {
   const TubeScene scene =
       PerfectScene({StraightLine({-0.15, 0, kRadius}, {0.25, 0, kRadius}),

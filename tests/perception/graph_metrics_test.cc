@@ -1,11 +1,10 @@
 #include "tests/support/graph_metrics.h"
 
 #include "tests/support/catch.h"
+#include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
 namespace {
-
-constexpr double kRadius = 0.0125;
 
 TubeScene SceneOf(const std::vector<Polyline>& lines_N) {
   TubeScene scene;

@@ -8,11 +8,10 @@
 #include "models/base/random.h"
 #include "perception/joining/chains.h"
 #include "tests/support/catch.h"
+#include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
 namespace {
-
-constexpr double kRadius = 0.0125;
 
 /// A straight fragment between two points, ends open.
 Fragment Piece(const Vector3& from, const Vector3& to) {

@@ -48,7 +48,7 @@ ToyScene Cross() {
   return scene;
 }
 
-LeaoCylinder Piece(const Vector3& from, const Vector3& to, int segment = 0) {
+LeaoCylinder Cylinder(const Vector3& from, const Vector3& to, int segment = 0) {
   LeaoCylinder cylinder;
   cylinder.end_N = {from, to};
   cylinder.segment = segment;
@@ -161,8 +161,8 @@ TEST_CASE("An empty bin and a cloud without returns hold no tube", "[unit]") {
 
 TEST_CASE("Ends are joined up to 3 cm apart, not farther", "[unit]") {
   const auto apart = [](double gap_m) {
-    return Join({Piece({-0.2, 0, 0.02}, {0, 0, 0.02}),
-                 Piece({gap_m, 0, 0.02}, {gap_m + 0.2, 0, 0.02})})
+    return Join({Cylinder({-0.2, 0, 0.02}, {0, 0, 0.02}),
+                 Cylinder({gap_m, 0, 0.02}, {gap_m + 0.2, 0, 0.02})})
         .size();
   };
   CHECK(apart(0.0299) == 1);
@@ -173,7 +173,8 @@ TEST_CASE("Ends are joined over a turn of up to 30 degrees, not more", "[unit]")
   const auto turned = [](double angle_deg) {
     const Vector3 way(std::cos(Radians(angle_deg)), std::sin(Radians(angle_deg)), 0);
     const Vector3 start(0.02, 0, 0.02);
-    return Join({Piece({-0.2, 0, 0.02}, {0, 0, 0.02}), Piece(start, start + 0.2 * way)}).size();
+    return Join({Cylinder({-0.2, 0, 0.02}, {0, 0, 0.02}), Cylinder(start, start + 0.2 * way)})
+        .size();
   };
   CHECK(turned(29.9) == 1);
   CHECK(turned(30.1) == 2);
@@ -181,11 +182,11 @@ TEST_CASE("Ends are joined over a turn of up to 30 degrees, not more", "[unit]")
 
 TEST_CASE("Neighbours on a bend that overlap are joined, tubes side by side are not", "[unit]") {
   const Vector3 way(std::cos(0.3), std::sin(0.3), 0);
-  CHECK(Join({Piece({-0.2, 0, 0.02}, {0, 0, 0.02}),
-              Piece({-0.018, 0.002, 0.02}, Vector3(-0.018, 0.002, 0.02) + 0.2 * way)})
+  CHECK(Join({Cylinder({-0.2, 0, 0.02}, {0, 0, 0.02}),
+              Cylinder({-0.018, 0.002, 0.02}, Vector3(-0.018, 0.002, 0.02) + 0.2 * way)})
             .size() == 1);
-  CHECK(Join({Piece({-0.2, 0, 0.02}, {0, 0, 0.02}),
-              Piece({-0.01, 2 * kRadius_m, 0.02}, {0.19, 2 * kRadius_m, 0.02})})
+  CHECK(Join({Cylinder({-0.2, 0, 0.02}, {0, 0, 0.02}),
+              Cylinder({-0.01, 2 * kRadius_m, 0.02}, {0.19, 2 * kRadius_m, 0.02})})
             .size() == 2);
 }
 
@@ -194,16 +195,16 @@ TEST_CASE("Of two possible partners the cheaper one is joined, a degree costs 2 
   const Vector3 bent(std::cos(Radians(5)), std::sin(Radians(5)), 0);
   const Vector3 near(0.014, 0, 0.02);
   const std::vector<LeaoTube> tubes =
-      Join({Piece({-0.1, 0, 0.02}, {0, 0, 0.02}), Piece(near, near + 0.1 * bent),
-            Piece({0.018, 0, 0.02}, {0.12, 0, 0.02})});
+      Join({Cylinder({-0.1, 0, 0.02}, {0, 0, 0.02}), Cylinder(near, near + 0.1 * bent),
+            Cylinder({0.018, 0, 0.02}, {0.12, 0, 0.02})});
   REQUIRE(tubes.size() == 2);
   CHECK(tubes[0].ends == std::vector<int>{0, 4});
   CHECK(tubes[1].ends == std::vector<int>{2});
 }
 
 TEST_CASE("A gap that the view looks through is not joined", "[unit]") {
-  const std::vector<LeaoCylinder> pieces = {Piece({-0.2, 0, 0.02}, {0, 0, 0.02}, 0),
-                                            Piece({0.02, 0, 0.02}, {0.2, 0, 0.02}, 1)};
+  const std::vector<LeaoCylinder> pieces = {Cylinder({-0.2, 0, 0.02}, {0, 0, 0.02}, 0),
+                                            Cylinder({0.02, 0, 0.02}, {0.2, 0, 0.02}, 1)};
   std::vector<ViewImage> views = Blind();
   CHECK(Join(pieces, views).size() == 1);
   views[0].z_near.assign(10000, 1.0f);  // The floor.
@@ -214,9 +215,9 @@ TEST_CASE("A gap that the view looks through is not joined", "[unit]") {
 }
 
 TEST_CASE("Tubes grow no longer than their limit", "[unit]") {
-  CHECK(Join({Piece({-0.3, 0, 0.02}, {0, 0, 0.02}), Piece({0.01, 0, 0.02}, {0.19, 0, 0.02})})
+  CHECK(Join({Cylinder({-0.3, 0, 0.02}, {0, 0, 0.02}), Cylinder({0.01, 0, 0.02}, {0.19, 0, 0.02})})
             .size() == 1);
-  CHECK(Join({Piece({-0.3, 0, 0.02}, {0, 0, 0.02}), Piece({0.01, 0, 0.02}, {0.21, 0, 0.02})})
+  CHECK(Join({Cylinder({-0.3, 0, 0.02}, {0, 0, 0.02}), Cylinder({0.01, 0, 0.02}, {0.21, 0, 0.02})})
             .size() == 2);
 }
 
@@ -225,7 +226,7 @@ TEST_CASE("Tubes shorter than Table 2 allows are discarded", "[unit]") {
     Part part = Tube50();
     part.kind = kind;
     part.length_m = part_m;
-    const std::vector<LeaoCylinder> one = {Piece({0, 0, 0.02}, {length_m, 0, 0.02})};
+    const std::vector<LeaoCylinder> one = {Cylinder({0, 0, 0.02}, {length_m, 0, 0.02})};
     return MakeLeaoTubes(Join(one), one, part, Leao2020Config()).size();
   };
   CHECK(kept(0.351, "rigid", 0.50) == 1);
@@ -239,7 +240,7 @@ TEST_CASE("Joints between segments are occlusions and decide the paper's class",
     std::vector<LeaoCylinder> pieces;
     for (std::size_t k = 0; k < segments.size(); ++k) {
       const double x = -0.2 + 0.13 * static_cast<double>(k);
-      pieces.push_back(Piece({x, 0, 0.02}, {x + 0.12, 0, 0.02}, segments[k]));
+      pieces.push_back(Cylinder({x, 0, 0.02}, {x + 0.12, 0, 0.02}, segments[k]));
     }
     const std::vector<PerceivedTube> tubes =
         MakeLeaoTubes(Join(pieces), pieces, Tube50(), Leao2020Config());

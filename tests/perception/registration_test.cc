@@ -14,14 +14,14 @@ const double kTurn_rad = Radians(0.012);
 
 /// Floor, walls and three tubes from the cell's eight poses; the poses that are believed miss the
 /// true ones by X_SbelievedS, the same for all.
-struct EightViews {
+struct SceneInViews {
   ToyScene scene;
   std::vector<OrganizedCloud> clouds;
   std::vector<RigidTransform> X_NS_true;
 };
 
-EightViews LookWith(const RigidTransform& X_SbelievedS) {
-  EightViews out;
+SceneInViews LookWith(const RigidTransform& X_SbelievedS) {
+  SceneInViews out;
   out.scene.tubes_N = {{{-0.3, -0.1, 0.0125}, {0.15, 0.1, 0.0125}},
                        {{-0.2, 0.15, 0.0125}, {0.2, -0.15, 0.0375}},
                        {{0.1, 0.2, 0.0125}, {0.3, -0.2, 0.0125}}};
@@ -53,7 +53,7 @@ const RigidTransform kHandEye =
 TEST_CASE("Floor and walls tell the hand-eye error of eight views", "[unit]") {
   for (const RigidTransform& X_SbelievedS :
        {RigidTransform(RigidTransform::Identity()), kHandEye}) {
-    const EightViews look = LookWith(X_SbelievedS);
+    const SceneInViews look = LookWith(X_SbelievedS);
     const Registration found = RegisterViews(RastersOf(look.clouds), look.scene.bin, {2});
     REQUIRE(found.points > 1000);
     CHECK(found.after_m < 0.00012);
@@ -69,7 +69,7 @@ TEST_CASE("Registration takes a hand-eye error out of the centerlines and harms 
           "[unit]") {
   Part part;
   part.length_m = 0.50;
-  const auto median_m = [&part](const EightViews& look, bool register_views) {
+  const auto median_m = [&part](const SceneInViews& look, bool register_views) {
     PerceptionConfig config;
     config.register_views = register_views;
     const TubeScene seen = Perceive(look.clouds, part, look.scene.bin, config, Parallelism{2});
@@ -77,9 +77,9 @@ TEST_CASE("Registration takes a hand-eye error out of the centerlines and harms 
                       look.scene.radius_m)
         .centerline_median_m;
   };
-  const EightViews exact = LookWith(RigidTransform::Identity());
+  const SceneInViews exact = LookWith(RigidTransform::Identity());
   CHECK(median_m(exact, true) < median_m(exact, false) + 0.00002);
-  const EightViews off = LookWith(kHandEye);
+  const SceneInViews off = LookWith(kHandEye);
   CHECK(median_m(off, false) > 0.0003);
   CHECK(median_m(off, true) < 0.00008);
 }
@@ -104,7 +104,7 @@ TEST_CASE("What nothing in the views shows stays as it is believed", "[unit]") {
 
 TEST_CASE("Views without floor and walls, or with a floor out of reach, are not corrected",
           "[unit]") {
-  const EightViews look = LookWith(RigidTransform::Identity());
+  const SceneInViews look = LookWith(RigidTransform::Identity());
   std::vector<OrganizedCloud> clouds = look.clouds;
   for (OrganizedCloud& cloud : clouds) cloud.X_NS.translation().z() += 0.05;
   const Registration far = RegisterViews(RastersOf(clouds), look.scene.bin, {2});

@@ -6,6 +6,7 @@
 #include "models/base/error.h"
 #include "models/base/random.h"
 #include "tests/support/catch.h"
+#include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
 namespace {
@@ -45,9 +46,7 @@ TEST_CASE("The assignment is as good as the best of all permutations", "[unit]")
   }
 }
 
-constexpr double kRadius = 0.0125;
-
-TubeScene SceneOf(const std::vector<Polyline>& lines_N) {
+TubeScene SeenScene(const std::vector<Polyline>& lines_N) {
   TubeScene scene;
   for (const Polyline& line : lines_N) {
     PerceivedTube tube;
@@ -76,7 +75,7 @@ const std::vector<Polyline> kTruth = {{{-0.2, 0, 0.0125}, {0.2, 0, 0.0125}},
 
 TEST_CASE("The true scene scores full marks in any order", "[unit]") {
   const TubeScore score =
-      ScoreTubes(SceneOf({kTruth[1], kTruth[0]}), kTruth, TopOf(kTruth), kRadius);
+      ScoreTubes(SeenScene({kTruth[1], kTruth[0]}), kTruth, TopOf(kTruth), kRadius);
   // At the crossing the lower tube's top is as near to the upper axis: a point may go either way.
   CHECK(score.micro_recall > 0.995);
   CHECK(score.found == 2);
@@ -90,7 +89,7 @@ TEST_CASE("A split tube costs its smaller part and is not found", "[unit]") {
   const Polyline left = {{-0.2, 0, 0.0125}, {-0.05, 0, 0.0125}};
   const Polyline right = {{-0.05, 0, 0.0125}, {0.2, 0, 0.0125}};
   const TubeScore score =
-      ScoreTubes(SceneOf({left, right, kTruth[1]}), kTruth, TopOf(kTruth), kRadius);
+      ScoreTubes(SeenScene({left, right, kTruth[1]}), kTruth, TopOf(kTruth), kRadius);
   // 150 of the first tube's 400 mm are lost, of 800 in all.
   CHECK(score.micro_recall == Approx(1.0 - 0.15 / 0.8).margin(0.005));
   CHECK(score.found == 1);
@@ -98,7 +97,7 @@ TEST_CASE("A split tube costs its smaller part and is not found", "[unit]") {
 }
 
 TEST_CASE("A missing upper tube makes the lower one called free", "[unit]") {
-  const TubeScore score = ScoreTubes(SceneOf({kTruth[0]}), kTruth, TopOf(kTruth), kRadius);
+  const TubeScore score = ScoreTubes(SeenScene({kTruth[0]}), kTruth, TopOf(kTruth), kRadius);
   CHECK(score.covered_called_free == 1);
   CHECK(score.found == 1);
   CHECK(score.pair_of_true[1] == -1);

@@ -3,11 +3,11 @@
 #include "models/base/error.h"
 #include "models/base/json.h"
 #include "tests/support/catch.h"
+#include "tests/support/tube_scenes.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
 /// The rule is sampled every millimetre, so positions along a curve are this exact.
 constexpr double kSampleTolerance_m = 0.0011;
 

@@ -7,16 +7,8 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
 // Crossings are found on samples 1 mm apart; the hidden stretch is walked in steps of 2 mm.
 constexpr double kSampling = 0.004;
-
-// Tube 1 along x on the floor from -0.25 to 0.25, tube 2 over it along y at x = 0.05.
-TubeScene Cross() {
-  return PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
-                       StraightLine({0.05, -0.2, 3 * kRadius}, {0.05, 0.2, 3 * kRadius})},
-                      kRadius);
-}
 
 const CandidateMotion& Named(const MotionSet& set, const std::string& name) {
   for (const CandidateMotion& motion : set.motions) {

@@ -15,7 +15,6 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
 const std::vector<Vector3> kUp = {{0, 0, 0}, {0, 0, 0.4}};
 
 CandidateMotion Motion(int tube, const std::string& name, std::vector<Vector3> waypoints_N) {
@@ -78,13 +77,6 @@ TEST_CASE("A leg profile knows from when on it only rises") {
   CHECK(aside.RisingFrom() == Approx(0.1 / 0.25 + 0.15));
   const LegProfile down({{0, 0, 0}, {0, 0, 0.1}, {0, 0, 0}}, 0.25);
   CHECK(down.RisingFrom() == down.duration_s());
-}
-
-// Tube 2 lies balanced across tube 1.
-TubeScene Balanced() {
-  return PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
-                       StraightLine({0.20, -0.25, 3 * kRadius}, {0.20, 0.25, 3 * kRadius})},
-                      kRadius);
 }
 
 TEST_CASE("Lifting a covered tube takes the other along", "[physics]") {

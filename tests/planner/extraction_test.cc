@@ -12,11 +12,10 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
 constexpr double kStep_m = 0.020;  // Of the ways that are tried.
 
 // Tube 1 along x on the floor from -0.20 to 0.20, tube 2 over it along y at x = 0.10.
-TubeScene Cross() {
+TubeScene ShortCross() {
   return PerfectScene({StraightLine({-0.20, 0, kRadius}, {0.20, 0, kRadius}),
                        StraightLine({0.10, -0.2, 3 * kRadius}, {0.10, 0.2, 3 * kRadius})},
                       kRadius);
@@ -30,14 +29,14 @@ const CandidateMotion* Find(const MotionSet& set, const std::string& name) {
 }
 
 TEST_CASE("A free tube needs no way out", "[unit]") {
-  const TubeScene scene = Cross();
+  const TubeScene scene = ShortCross();
   const MotionSet set = MotionsOf(kWaysOut, scene, scene.tubes[1]);
   CHECK(set.motions.empty());
   CHECK(set.rejections.empty());
 }
 
 TEST_CASE("A drawer's way ends where nothing covers the tube any more", "[unit]") {
-  const TubeScene scene = Cross();
+  const TubeScene scene = ShortCross();
   const MotionSet set = MotionsOf(kWaysOut, scene, scene.tubes[0]);
   const CandidateMotion* back = Find(set, "slide-");
   REQUIRE(back != nullptr);
@@ -60,7 +59,7 @@ TEST_CASE("A drawer's way ends where nothing covers the tube any more", "[unit]"
 }
 
 TEST_CASE("The best way out is never longer than a drawer's, and ends uncovered", "[unit]") {
-  const TubeScene scene = Cross();
+  const TubeScene scene = ShortCross();
   const MotionSet set = MotionsOf(kWaysOut, scene, scene.tubes[0]);
   const CandidateMotion *away = Find(set, "escape_away"), *back = Find(set, "slide-");
   REQUIRE(away != nullptr);
@@ -77,7 +76,7 @@ TEST_CASE("The best way out is never longer than a drawer's, and ends uncovered"
 TEST_CASE("A way out that the wall ends too early is refused with the reason", "[unit]") {
   Bin narrow;
   narrow.size_m = {0.46, 0.44, 0.09};
-  const TubeScene scene = Cross();
+  const TubeScene scene = ShortCross();
   const MotionSet set = MotionsOf(kWaysOut, scene, scene.tubes[0], narrow);
   CHECK(Find(set, "slide-") == nullptr);
   REQUIRE_FALSE(set.rejections.empty());
@@ -85,7 +84,7 @@ TEST_CASE("A way out that the wall ends too early is refused with the reason", "
 }
 
 TEST_CASE("Separations have the published shapes and keep off the walls", "[unit]") {
-  const TubeScene scene = Cross();
+  const TubeScene scene = ShortCross();
   const ExtractionConfig config;
   const MotionSet set = MotionsOf(kSeparations, scene, scene.tubes[0], Bin{}, config);
   CHECK(set.motions.size() == 1 + 1 + 16 + 4);
@@ -177,7 +176,7 @@ TEST_CASE("Round a corner goes what would push others on every straight way", "[
   CHECK(second.normalized().isApprox(-Vector3::UnitX(), 1e-6));
   CHECK(-second.x() >= 0.05 + 2 * kRadius);
   // Where a straight way pushes nobody there is no need.
-  CHECK(Find(MotionsOf(kWaysOut, Cross(), Cross().tubes[0]), "escape_corner") == nullptr);
+  CHECK(Find(MotionsOf(kWaysOut, ShortCross(), ShortCross().tubes[0]), "escape_corner") == nullptr);
 }
 
 }  // namespace

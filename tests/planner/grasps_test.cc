@@ -12,9 +12,6 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
-const std::vector<Vector3> kNoPoints;
-
 GraspSites Sites(const TubeScene& scene, int index,
                  const std::vector<Vector3>& points_N = kNoPoints) {
   return FindGraspSites({scene, points_N, Bin{}, FirstGripper(), GraspConfig{}},

@@ -15,10 +15,8 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
 constexpr double kHalfX = 0.385, kHalfY = 0.29;  // Of the default bin.
 constexpr double kLeast_m = 0.002;               // PlannerConfig::finger_clearance_m.
-const std::vector<Vector3> kNoPoints;
 
 std::optional<std::string> AnyGrasp(const Grasp&, const CandidateMotion&) { return std::nullopt; }
 std::optional<std::string> AnyNudge(const Nudge&) { return std::nullopt; }

@@ -17,7 +17,6 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
 constexpr double kSame_m = 1e-6, kSame_rad = 1e-6;  // Rounding of the inverse kinematics.
 
 const MotionPlanner& Planner() {

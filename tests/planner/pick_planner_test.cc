@@ -17,8 +17,6 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
-
 std::optional<std::string> Always(const Grasp&, const CandidateMotion&) { return std::nullopt; }
 
 // Likes "escape-", sees "up" bring another tube along and "escape+" jam; keeps what it was asked.
@@ -53,7 +51,7 @@ struct FakeEvaluator {
 };
 
 // Tube 1 along x under tube 2.
-TubeScene Cross() {
+TubeScene LopsidedCross() {
   return PerfectScene({StraightLine({-0.15, 0, kRadius}, {0.25, 0, kRadius}),
                        StraightLine({0.05, -0.2, 3 * kRadius}, {0.05, 0.2, 3 * kRadius})},
                       kRadius);
@@ -79,7 +77,7 @@ bool AnyReason(const PlanResult& result, int tube, const std::string& text) {
 
 TEST_CASE("A free tube is picked upwards without asking the simulator", "[unit]") {
   FakeEvaluator evaluator;
-  const PlanResult result = Plan(Cross(), PlannerConfig{}, evaluator);
+  const PlanResult result = Plan(LopsidedCross(), PlannerConfig{}, evaluator);
   CHECK(evaluator.calls == 0);
   REQUIRE(result.plans.size() == 3);  // plans_per_tube, for the one free tube.
   for (const PickPlan& plan : result.plans) {
@@ -94,7 +92,7 @@ TEST_CASE("A free tube is picked upwards without asking the simulator", "[unit]"
 
 TEST_CASE("Of two free tubes the one that sets others free is picked first", "[unit]") {
   FakeEvaluator evaluator;
-  TubeScene scene = Cross();
+  TubeScene scene = LopsidedCross();
   // Tube 3 lies alone.
   scene.tubes.push_back(
       PerfectScene({StraightLine({-0.25, -0.2, kRadius}, {-0.25, 0.2, kRadius})}, kRadius)
@@ -115,7 +113,7 @@ TEST_CASE("Of two free tubes the one that sets others free is picked first", "[u
 
 TEST_CASE("By occluded joints a strongly occluded tube is no candidate", "[unit]") {
   FakeEvaluator evaluator;
-  TubeScene scene = Cross();
+  TubeScene scene = LopsidedCross();
   scene.tubes[0].class_paper = TubeClass::kFree;  // Although a tube lies over it.
   scene.tubes[1].class_paper = TubeClass::kStrong;
   PlannerConfig config;
@@ -138,7 +136,7 @@ TEST_CASE("With free tubes excluded the simulator decides, and a jam comes last"
   config.exclude_free = true;
   config.plans_per_tube = 100;
   config.max_plans = 100;
-  const PlanResult result = Plan(Cross(), config, evaluator);
+  const PlanResult result = Plan(LopsidedCross(), config, evaluator);
   CHECK(evaluator.calls == 3);  // One sample of all, then two and two of the best.  // All motions
                                 // once, then the best ones with all samples.
   CHECK(evaluator.first.samples == 1);
@@ -227,7 +225,7 @@ TEST_CASE("Of the ways of one tip the first that the arm can run is rolled out",
     }
     return "the forearm is in the way";
   };
-  Plan(Cross(), config, evaluator, turned_only);
+  Plan(LopsidedCross(), config, evaluator, turned_only);
   std::map<std::string, int> rolled_out;
   for (const EvaluationRequest& request : evaluator.requests) {
     if (request.first_sample > 0) continue;
@@ -323,7 +321,7 @@ TEST_CASE("A short tube comes last but comes", "[unit]") {
 
 TEST_CASE("Doubt about a free tube puts a covered one first", "[unit]") {
   FakeEvaluator evaluator;
-  TubeScene scene = Cross();
+  TubeScene scene = LopsidedCross();
   scene.tubes[1].confidence = 0.1;
   const PlanResult result = Plan(scene, PlannerConfig{}, evaluator);
   CHECK(evaluator.calls > 0);
@@ -337,7 +335,7 @@ TEST_CASE("Doubt about a free tube puts a covered one first", "[unit]") {
 TEST_CASE("What the arm refuses is left out with its reason, the turned yaw is tried", "[unit]") {
   FakeEvaluator evaluator;
   const PlanResult refused =
-      Plan(Cross(), PlannerConfig{}, evaluator,
+      Plan(LopsidedCross(), PlannerConfig{}, evaluator,
            [](const Grasp&, const CandidateMotion&) { return std::string("out of reach"); });
   CHECK(refused.plans.empty());
   CHECK(AnyReason(refused, 1, "arm: out of reach"));
@@ -347,7 +345,7 @@ TEST_CASE("What the arm refuses is left out with its reason, the turned yaw is t
     if ((Bin{}.X_BN.linear() * grasp.X_NG.linear().col(0)).x() < -0.5) return std::nullopt;
     return "wrist limit";
   };
-  const PlanResult turned = Plan(Cross(), PlannerConfig{}, evaluator, wants);
+  const PlanResult turned = Plan(LopsidedCross(), PlannerConfig{}, evaluator, wants);
   REQUIRE_FALSE(turned.plans.empty());
   CHECK(turned.plans[0].grasp.X_NG.linear().col(2).isApprox(-Vector3::UnitZ()));
 }
@@ -368,7 +366,7 @@ TEST_CASE("plan.json lists ranking, candidates and reasons", "[unit]") {
   FakeEvaluator evaluator;
   PlannerConfig config;
   config.exclude_free = true;
-  const Json json = ToJson(Plan(Cross(), config, evaluator));
+  const Json json = ToJson(Plan(LopsidedCross(), config, evaluator));
   CHECK(json["schema"] == "tubetwin/plan/1");
   CHECK(json["ranking"].size() == 3);
   CHECK(json["ranking"][0]["class"] == "weak");

@@ -5,13 +5,12 @@
 #include "models/base/random.h"
 #include "tests/support/catch.h"
 #include "tests/support/paper_cell.h"
+#include "tests/support/planning.h"
 
 namespace tubetwin {
 namespace {
 
 bool Anywhere(const RigidTransform&) { return true; }
-
-constexpr double kExact = 1e-9;  // Closed form, double precision.
 
 TEST_CASE("A straight tube's principal direction is its axis", "[unit]") {
   const Vector3 axis = Vector3(1, 2, 0.5).normalized();

@@ -12,8 +12,6 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
-
 CandidateScore Score(const TubeScene& scene, const CandidateMotion& motion, bool full = false,
                      double give_up_m = EvaluatorConfig().give_up_m) {
   EvaluatorOptions options;
@@ -24,13 +22,6 @@ CandidateScore Score(const TubeScene& scene, const CandidateMotion& motion, bool
   request.grasp_at_m = {0.4 * Length(scene.tubes[0].centerline_N)};
   request.full = full;
   return MakeEvaluator(options)(scene, LoadPart("pvc_a"), Bin{}, request).candidates[0];
-}
-
-// Tube 2 lies balanced across tube 1.
-TubeScene Balanced() {
-  return PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
-                       StraightLine({0.20, -0.25, 3 * kRadius}, {0.20, 0.25, 3 * kRadius})},
-                      kRadius);
 }
 
 CandidateMotion Turned(const Vector3& pivot_N, const Vector3& axis,

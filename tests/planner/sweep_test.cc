@@ -7,19 +7,11 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
-
 TubePath Motion(int tube, std::vector<Vector3> waypoints_N) {
   TubePath motion;
   motion.tube = tube;
   motion.waypoints_N = std::move(waypoints_N);
   return motion;
-}
-
-TubeScene Cross() {
-  return PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
-                       StraightLine({0.05, -0.2, 3 * kRadius}, {0.05, 0.2, 3 * kRadius})},
-                      kRadius);
 }
 
 TEST_CASE("A simplified line keeps its corners and stays within the tolerance", "[unit]") {

@@ -7,9 +7,6 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kRadius = 0.0125;
-constexpr double kExact = 1e-9;
-
 // Tube 1 along y on the floor, tube 2 over it along x: near end at 0.05, far end on the floor.
 TubeScene LidScene(double near_x = 0.05) {
   return PerfectScene({StraightLine({0, -0.2, kRadius}, {0, 0.2, kRadius}),

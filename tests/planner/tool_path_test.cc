@@ -3,11 +3,10 @@
 #include "models/base/error.h"
 #include "models/base/json.h"
 #include "tests/support/catch.h"
+#include "tests/support/planning.h"
 
 namespace tubetwin {
 namespace {
-
-constexpr double kExact = 1e-9;
 
 Eigen::Quaterniond About(const Vector3& axis, double angle_deg) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(Radians(angle_deg), axis));

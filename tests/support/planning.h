@@ -12,6 +12,9 @@
 
 namespace tubetwin {
 
+/// How far results of closed forms in double precision may be off.
+inline constexpr double kExact = 1e-9;
+
 /// The gripper of the first cell.
 inline const GripperGeometry& FirstGripper() {
   static const GripperGeometry gripper = MakeGripperGeometry(PaperCell());

@@ -6,6 +6,12 @@
 
 namespace tubetwin {
 
+/// That of nearly all tubes in the tests, in metres: the part pvc_a's.
+inline constexpr double kRadius = 0.0125;
+
+/// For searches in scenes of tubes alone.
+inline const std::vector<Vector3> kNoPoints;
+
 /// A straight line of nodes at most 10 mm apart.
 inline Polyline StraightLine(const Vector3& from, const Vector3& to) {
   return Resample({from, to}, 0.01);
@@ -28,6 +34,20 @@ inline TubeScene PerfectScene(const std::vector<Polyline>& lines_N, double radiu
   }
   AssignClasses(scene, radius_m);
   return scene;
+}
+
+/// Tube 1 along x on the floor from -0.25 to 0.25, tube 2 over it along y at x = 0.05.
+inline TubeScene Cross() {
+  return PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
+                       StraightLine({0.05, -0.2, 3 * kRadius}, {0.05, 0.2, 3 * kRadius})},
+                      kRadius);
+}
+
+/// Tube 2 lies balanced across tube 1.
+inline TubeScene Balanced() {
+  return PerfectScene({StraightLine({-0.25, 0, kRadius}, {0.25, 0, kRadius}),
+                       StraightLine({0.20, -0.25, 3 * kRadius}, {0.20, 0.25, 3 * kRadius})},
+                      kRadius);
 }
 
 inline Polyline Shifted(const Polyline& line, const Vector3& by) {
