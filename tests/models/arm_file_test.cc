@@ -3,20 +3,12 @@
 #include "models/arm/arm.h"
 #include "models/base/error.h"
 #include "models/base/files.h"
-#include "models/files/embedded.h"
 #include "tests/support/catch.h"
+#include "tests/support/shipped.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
 namespace {
-
-std::string Shipped(const std::string& name) {
-  for (const EmbeddedText& text : EmbeddedTexts()) {
-    if (text.path == "arms/" + name + ".toml") return std::string(text.text);
-  }
-  FAIL(name);
-  return "";
-}
 
 /// The first `from` becomes `to`.
 std::string Changed(std::string text, const std::string& from, const std::string& to) {
@@ -52,7 +44,7 @@ TEST_CASE("Arms that ship are found by name, others by path, and are then the sa
   CHECK(ArmNames() == std::vector<std::string>{"gp12", "hc10", "ur10e"});
   const TemporaryFolder folder;
   for (const std::string& name : ArmNames()) {
-    WriteFileAtomically(folder / "own.toml", Shipped(name));
+    WriteFileAtomically(folder / "own.toml", Shipped("arms/" + name + ".toml"));
     const ArmModel own = LoadArm(folder / "own.toml"), shipped = LoadArm(name);
     CHECK(own.name == shipped.name);
     CHECK(FlangePose(own, own.working.q).matrix() ==
@@ -112,8 +104,9 @@ TEST_CASE("Figures of a shape reach its half sizes and its pose", "[unit]") {
 }
 
 TEST_CASE("Rotations are about x, then y, then z of the frame outside", "[unit]") {
-  const std::string text = Changed(Shipped("gp12"), "flange_rpy_deg = [180.0, -90.0, 0.0]",
-                                   "flange_rpy_deg = [30.0, 40.0, 50.0]");
+  const std::string text =
+      Changed(Shipped("arms/gp12.toml"), "flange_rpy_deg = [180.0, -90.0, 0.0]",
+              "flange_rpy_deg = [30.0, 40.0, 50.0]");
   const TemporaryFolder folder;
   WriteFileAtomically(folder / "own.toml", text);
   const Matrix3 R = LoadArm(folder / "own.toml").X_6F.linear();
@@ -150,7 +143,7 @@ TEST_CASE("A wrong figure is refused with its line and what is allowed", "[unit]
       {"length_m = 0.33", "size_m = [1, 1, 1]", "a cylinder has no size_m"},
       {"speed_deg_s = 260.0", "speed_rad_s = 4.5", "speed_rad_s: unknown key"}};
   for (const Case& c : cases) {
-    const std::string text = Changed(Shipped("gp12"), c.from, c.to);
+    const std::string text = Changed(Shipped("arms/gp12.toml"), c.from, c.to);
     const std::string message = Refusal(text);
     INFO(c.to);
     CHECK_THAT(message, Catch::Matchers::Contains(c.message));
@@ -159,7 +152,7 @@ TEST_CASE("A wrong figure is refused with its line and what is allowed", "[unit]
 }
 
 TEST_CASE("What a file leaves out is named", "[unit]") {
-  const std::string text = Shipped("gp12");
+  const std::string text = Shipped("arms/gp12.toml");
   CHECK_THAT(Refusal(Changed(text, "effort_Nm = 1029.0\n", "")),
              Catch::Matchers::Contains("joint 2 (joint_2_l) lacks the key effort_Nm"));
   CHECK_THAT(Refusal(Changed(text, "working_deg", "# ")),

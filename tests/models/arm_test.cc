@@ -5,6 +5,7 @@
 
 #include "models/base/random.h"
 #include "tests/support/catch.h"
+#include "tests/support/joints.h"
 #include "tests/support/paper_cell.h"
 
 namespace tubetwin {
@@ -18,19 +19,6 @@ JointVector Deg(double s, double l, double u, double r, double b, double t) {
   JointVector q;
   q << s, l, u, r, b, t;
   return q * kPi / 180.0;
-}
-
-double Wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
-
-double Difference(const JointVector& a, const JointVector& b) {
-  double largest = 0;
-  for (int i = 0; i < kNumJoints; ++i) largest = std::max(largest, std::abs(Wrapped(a[i] - b[i])));
-  return largest;
-}
-
-bool Contains(const std::vector<JointVector>& all, const JointVector& q, double tolerance) {
-  return std::any_of(all.begin(), all.end(),
-                     [&](const JointVector& other) { return Difference(q, other) < tolerance; });
 }
 
 JointVector RandomJoints(RandomStream& stream) {
@@ -136,7 +124,7 @@ TEST_CASE("All eight solutions of a general pose are found", "[unit]") {
       Deg(-149.0949, -91.5456, 102.4308, 39.4750, 122.7084, -99.8374)};
   const auto all = InverseAll(PaperCell().arm, FlangePose(PaperCell().arm, expected[0]));
   CHECK(all.size() == expected.size());
-  for (const JointVector& q : expected) CHECK(Contains(all, q, Radians(kTableAngle_deg)));
+  for (const JointVector& q : expected) CHECK(Holds(all, q, Radians(kTableAngle_deg)));
 }
 
 TEST_CASE("All twelve solutions of a vertical tool are found", "[unit]") {
@@ -147,7 +135,7 @@ TEST_CASE("All twelve solutions of a vertical tool are found", "[unit]") {
                                Deg(-24.9081, 49.7503, 55.7247, 0, -5.9744, 24.9081),
                                Deg(4.9688, 49.4584, 49.4584, -159.3503, 0, 154.3815),
                                Deg(-23.8934, 49.4584, 49.4584, -20.6497, 0, 44.5432)}) {
-    CHECK(Contains(all, q, Radians(kTableAngle_deg)));
+    CHECK(Holds(all, q, Radians(kTableAngle_deg)));
   }
 }
 
@@ -169,7 +157,7 @@ TEST_CASE("Every inverse solution reaches its pose and the generating joints are
       CHECK(other[2] >= PaperCell().arm.joints[2].lower_rad);
       CHECK(other[2] <= PaperCell().arm.joints[2].upper_rad);
     }
-    const bool hit = Contains(all, q, 1e-5);
+    const bool hit = Holds(all, q, 1e-5);
     found += hit;
     if (Manipulability(PaperCell().arm, q, RigidTransform::Identity()) > 0.02) {
       ++regular;

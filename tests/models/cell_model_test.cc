@@ -4,22 +4,14 @@
 
 #include "models/base/error.h"
 #include "models/base/files.h"
-#include "models/files/embedded.h"
 #include "tests/support/catch.h"
+#include "tests/support/shipped.h"
 #include "tests/support/temporary_folder.h"
 
 namespace tubetwin {
 namespace {
 
 using Catch::Matchers::Contains;
-
-std::string Shipped(const std::string& path) {
-  for (const EmbeddedText& text : EmbeddedTexts()) {
-    if (text.path == path) return std::string(text.text);
-  }
-  FAIL("no such text: " + path);
-  return "";
-}
 
 /// `text` with `from`, which must be there once, replaced.
 std::string With(std::string text, const std::string& from, const std::string& to) {

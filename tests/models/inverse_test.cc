@@ -13,28 +13,15 @@
 #include "models/base/error.h"
 #include "models/base/random.h"
 #include "tests/support/catch.h"
+#include "tests/support/joints.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kFlangeRounding = 1e-12;
 constexpr double kPose = 1e-9;              // what InverseAll promises
 constexpr double kSameSolution_rad = 1e-5;  // both sides stop at poses that are 1e-9 off at most
 constexpr double kRegular = 0.02;           // manipulability; below, solutions fall together
-
-double Difference(const JointVector& a, const JointVector& b) {
-  double largest = 0;
-  for (int i = 0; i < kNumJoints; ++i) {
-    largest = std::max(largest, std::abs(std::remainder(a[i] - b[i], 2 * kPi)));
-  }
-  return largest;
-}
-
-bool Contains(const std::vector<JointVector>& all, const JointVector& q) {
-  return std::any_of(all.begin(), all.end(), [&](const JointVector& other) {
-    return Difference(q, other) < kSameSolution_rad;
-  });
-}
 
 JointVector RandomJoints(const ArmModel& arm, RandomStream& stream) {
   JointVector q;
@@ -152,7 +139,7 @@ TEST_CASE("Forward kinematics of every shipped arm is that of the vendor's descr
       }
     }
     INFO(name << ": largest difference " << worst);
-    CHECK(worst < kRounding);
+    CHECK(worst < kFlangeRounding);
   }
 }
 
@@ -173,8 +160,8 @@ TEST_CASE("KDL's own numeric inverse finds nothing that the methods here miss", 
       const JointVector q_kdl = found.data;
       if (Manipulability(arm, q_kdl) < kRegular) continue;
       ++solved;
-      by_closed += Contains(InverseAll(arm, X_BF), q_kdl);
-      by_numeric += Contains(InverseAll(numeric, X_BF), q_kdl);
+      by_closed += Holds(InverseAll(arm, X_BF), q_kdl, kSameSolution_rad);
+      by_numeric += Holds(InverseAll(numeric, X_BF), q_kdl, kSameSolution_rad);
     }
     INFO(name << ": KDL solved " << solved);
     CHECK(solved > 20);
@@ -200,8 +187,8 @@ void CheckAgreement(const ArmModel& arm, const std::string& one, const std::stri
     ++compared;
     solutions += static_cast<int>(of_a.size());
     most = std::max(most, of_a.size());
-    for (const JointVector& q : of_a) missed_by_other += !Contains(of_b, q);
-    for (const JointVector& q : of_b) missed_by_one += !Contains(of_a, q);
+    for (const JointVector& q : of_a) missed_by_other += !Holds(of_b, q, kSameSolution_rad);
+    for (const JointVector& q : of_b) missed_by_one += !Holds(of_a, q, kSameSolution_rad);
   }
   INFO(arm.name << ": " << one << " against " << other << ", " << compared << " poses, "
                 << solutions << " solutions, at most " << most);
@@ -261,7 +248,7 @@ TEST_CASE("An arm that no closed form solves has the solution that made the pose
     const auto all = InverseAll(arm, FlangePose(arm, q));
     solutions += static_cast<int>(all.size());
     CHECK(all.size() <= 16);
-    found += Contains(all, q);
+    found += Holds(all, q, kSameSolution_rad);
   }
   CHECK(regular > 80);
   CHECK(found == regular);
@@ -289,7 +276,7 @@ TEST_CASE("All solutions reach the pose, are sorted, wrapped and there once", "[
           CHECK((wrapped || inside));
         }
         if (i == 0) continue;
-        CHECK(Difference(all[i], all[i - 1]) > 1e-6);
+        CHECK(LargestDifference(all[i], all[i - 1]) > 1e-6);
         CHECK(std::lexicographical_compare(all[i - 1].data(), all[i - 1].data() + kNumJoints,
                                            all[i].data(), all[i].data() + kNumJoints));
       }
