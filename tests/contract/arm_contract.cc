@@ -4,27 +4,11 @@
 
 #include "models/base/error.h"
 #include "tests/contract/advance.h"
+#include "tests/support/arm_motions.h"
 #include "tests/support/catch.h"
-#include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
-
-constexpr double kStanding_rad = 0.002;
-
-CheckedTrajectory Checked(JointTrajectory trajectory) {
-  const auto checked = CheckTrajectory(PaperCell().arm, std::move(trajectory));
-  if (const auto* why = std::get_if<TrajectoryRejection>(&checked)) FAIL(why->reason);
-  return std::get<CheckedTrajectory>(checked);
-}
-
-CheckedTrajectory Moved(const JointVector& from, double by_rad, double duration_s) {
-  TrajectoryPoint a, b;
-  a.q = from;
-  b.q = from + by_rad * JointVector::Ones();
-  b.time_s = duration_s;
-  return Checked({{a, b}});
-}
 
 /// To and fro along a smooth curve, a point every 5 ms, at rest at both ends.
 CheckedTrajectory Waving(const JointVector& from, double by_rad, double duration_s) {
@@ -43,10 +27,6 @@ CheckedTrajectory Waving(const JointVector& from, double by_rad, double duration
     trajectory.points.push_back(point);
   }
   return Checked(std::move(trajectory));
-}
-
-double Farthest(const JointVector& a, const JointVector& b) {
-  return (a - b).cwiseAbs().maxCoeff();
 }
 
 /// There, at rest and ready.

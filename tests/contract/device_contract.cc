@@ -4,32 +4,17 @@
 
 #include "models/gripper_spec.h"
 #include "tests/contract/advance.h"
+#include "tests/support/arm_motions.h"
 #include "tests/support/catch.h"
 #include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
 namespace {
 
-/// Encoders and servos of real arms stand this near to where they were sent.
-constexpr double kStanding_rad = 0.002;
 /// Two counts of the gripper's register.
 constexpr double kOpening_m = 0.0008;
 /// A sample older than this is not the newest one of a sensor of 7000 to 100 Hz.
 constexpr TimeNs kOldest = std::chrono::milliseconds(25);
-
-CheckedTrajectory Moved(const JointVector& from, double by_rad, double duration_s) {
-  TrajectoryPoint a, b;
-  a.q = from;
-  b.q = from + by_rad * JointVector::Ones();
-  b.time_s = duration_s;
-  const auto checked = CheckTrajectory(PaperCell().arm, {{a, b}});
-  REQUIRE(std::holds_alternative<CheckedTrajectory>(checked));
-  return std::get<CheckedTrajectory>(checked);
-}
-
-double Farthest(const JointVector& a, const JointVector& b) {
-  return (a - b).cwiseAbs().maxCoeff();
-}
 
 }  // namespace
 

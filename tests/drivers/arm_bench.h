@@ -5,29 +5,11 @@
 #include "hw_bridge/drivers/yaskawa/yaskawa_arm.h"
 #include "tests/drivers/served.h"
 #include "tests/drivers/served_arm.h"
+#include "tests/support/arm_motions.h"
 #include "tests/support/catch.h"
 #include "tests/support/paper_cell.h"
 
 namespace tubetwin::test {
-
-inline CheckedTrajectory Checked(JointTrajectory trajectory) {
-  const auto checked = CheckTrajectory(PaperCell().arm, std::move(trajectory));
-  if (const auto* why = std::get_if<TrajectoryRejection>(&checked)) FAIL(why->reason);
-  return std::get<CheckedTrajectory>(checked);
-}
-
-/// There within `duration_s`, at rest at both ends.
-inline CheckedTrajectory Moved(const JointVector& from, const JointVector& by, double duration_s) {
-  TrajectoryPoint a, b;
-  a.q = from;
-  b.q = from + by;
-  b.time_s = duration_s;
-  return Checked({{a, b}});
-}
-
-inline CheckedTrajectory Moved(const JointVector& from, double by_rad, double duration_s) {
-  return Moved(from, JointVector(by_rad * JointVector::Ones()), duration_s);
-}
 
 /// Driver and emulated controller.
 struct ArmBench {

@@ -21,7 +21,7 @@ JointVector Somewhere() {
   return q;
 }
 
-JointTrajectory Moved(double by_rad, double duration_s) {
+JointTrajectory AllJointsBy(double by_rad, double duration_s) {
   TrajectoryPoint a, b;
   a.q = Somewhere();
   b.q = a.q + by_rad * JointVector::Ones();
@@ -95,7 +95,7 @@ struct Exchange {
 TEST_CASE("A streamed motion runs as planned, no more than its lead ahead", "[unit]") {
   const double duration_s = GENERATE(0.003, 0.0404, 0.7, 1.2345);
   CAPTURE(duration_s);
-  const JointTrajectory planned = Moved(0.3 * duration_s * duration_s, duration_s);
+  const JointTrajectory planned = AllJointsBy(0.3 * duration_s * duration_s, duration_s);
   Exchange exchange(planned, Somewhere());
   double worst_rad = 0.0, begin_s = 0.0;
   while (exchange.Step()) {
@@ -114,7 +114,7 @@ TEST_CASE("A streamed motion runs as planned, no more than its lead ahead", "[un
 }
 
 TEST_CASE("A start beside the path is led onto it", "[unit]") {
-  const JointTrajectory planned = Moved(0.3, 1.0);
+  const JointTrajectory planned = AllJointsBy(0.3, 1.0);
   Exchange exchange(planned, Somewhere() + 0.003 * JointVector::Ones());
   while (exchange.Step()) REQUIRE(exchange.now_s < 15.0);
   CHECK((exchange.q - planned.points.back().q).cwiseAbs().maxCoeff() < 1e-6);
@@ -122,20 +122,20 @@ TEST_CASE("A start beside the path is led onto it", "[unit]") {
 }
 
 TEST_CASE("Points that find the controller busy come again unchanged", "[unit]") {
-  Exchange exchange(Moved(0.3, 1.0), Somewhere());
+  Exchange exchange(AllJointsBy(0.3, 1.0), Somewhere());
   for (int i = 0; exchange.Step(); ++i) {
     if (i % 100 == 0) exchange.busy = 3;
     REQUIRE(exchange.now_s < 15.0);
   }
   CHECK(exchange.problem.empty());
-  CHECK((exchange.q - Moved(0.3, 1.0).points.back().q).cwiseAbs().maxCoeff() < 1e-6);
+  CHECK((exchange.q - AllJointsBy(0.3, 1.0).points.back().q).cwiseAbs().maxCoeff() < 1e-6);
 }
 
 TEST_CASE("A ramp ends on the path, within half of the acceleration limits and little more",
           "[unit]") {
   const double at_s = GENERATE(0.2, 0.9, 1.5);
   CAPTURE(at_s);
-  const JointTrajectory planned = Moved(1.0, 2.0);
+  const JointTrajectory planned = AllJointsBy(1.0, 2.0);
   Exchange exchange(planned, Somewhere());
   while (exchange.now_s < 10.0 + at_s) REQUIRE(exchange.Step());
   const double before_rad_s2 = exchange.fastest_rad_s2;
@@ -154,7 +154,7 @@ TEST_CASE("A ramp ends on the path, within half of the acceleration limits and l
 }
 
 TEST_CASE("A stop before anything moves is a stop at once", "[unit]") {
-  Exchange exchange(Moved(0.3, 1.0), Somewhere());
+  Exchange exchange(AllJointsBy(0.3, 1.0), Somewhere());
   exchange.motion.Stop(StopKind::kOnPath, JointVector::Zero());
   CHECK(exchange.motion.StopDue());
   while (exchange.Step()) REQUIRE(exchange.now_s < 11.0);
@@ -163,7 +163,7 @@ TEST_CASE("A stop before anything moves is a stop at once", "[unit]") {
 }
 
 TEST_CASE("An arm that is held back is not given more, and is told as held back", "[unit]") {
-  Exchange exchange(Moved(0.3, 2.0), Somewhere());
+  Exchange exchange(AllJointsBy(0.3, 2.0), Somewhere());
   while (exchange.now_s < 10.5) REQUIRE(exchange.Step());
   CHECK_FALSE(exchange.motion.held_back());
   exchange.runs = false;
@@ -173,13 +173,13 @@ TEST_CASE("An arm that is held back is not given more, and is told as held back"
   exchange.runs = true;
   while (exchange.Step()) REQUIRE(exchange.now_s < 15.0);
   CHECK_FALSE(exchange.motion.held_back());
-  CHECK((exchange.q - Moved(0.3, 2.0).points.back().q).cwiseAbs().maxCoeff() < 1e-6);
+  CHECK((exchange.q - AllJointsBy(0.3, 2.0).points.back().q).cwiseAbs().maxCoeff() < 1e-6);
 }
 
 TEST_CASE("A controller that limits the speed holds the arm back, from a quarter on", "[unit]") {
   const auto [rate, held] = GENERATE(table<double, bool>({{0.9, false}, {0.6, true}, {0.2, true}}));
   CAPTURE(rate);
-  Exchange exchange(Moved(0.3, 2.0), Somewhere());
+  Exchange exchange(AllJointsBy(0.3, 2.0), Somewhere());
   while (exchange.now_s < 10.5) REQUIRE(exchange.Step());
   exchange.rate = rate;
   while (exchange.now_s < 11.4) {
@@ -192,11 +192,11 @@ TEST_CASE("A controller that limits the speed holds the arm back, from a quarter
   while (exchange.Step()) REQUIRE(exchange.now_s < 25.0);
   CHECK(exchange.problem.empty());
   CHECK_FALSE(exchange.motion.held_back());
-  CHECK((exchange.q - Moved(0.3, 2.0).points.back().q).cwiseAbs().maxCoeff() < 1e-6);
+  CHECK((exchange.q - AllJointsBy(0.3, 2.0).points.back().q).cwiseAbs().maxCoeff() < 1e-6);
 }
 
 TEST_CASE("A controller that has run dry on the way is a problem", "[unit]") {
-  Exchange exchange(Moved(0.3, 2.0), Somewhere());
+  Exchange exchange(AllJointsBy(0.3, 2.0), Somewhere());
   while (exchange.now_s < 10.5) REQUIRE(exchange.Step());
   while (!exchange.queue.empty()) exchange.queue.Next(exchange.q);
   exchange.now_s += 0.2;  // The link was away.
@@ -207,9 +207,9 @@ TEST_CASE("A controller that has run dry on the way is a problem", "[unit]") {
 TEST_CASE("What is appended is streamed on, at rest or before", "[unit]") {
   const double at_s = GENERATE(0.05, 0.39, 0.49);
   CAPTURE(at_s);
-  Exchange exchange(Moved(0.05, 0.4), Somewhere());
+  Exchange exchange(AllJointsBy(0.05, 0.4), Somewhere());
   while (exchange.now_s < 10.0 + at_s) exchange.Step();
-  JointTrajectory back = Moved(0.05, 0.4);
+  JointTrajectory back = AllJointsBy(0.05, 0.4);
   std::swap(back.points.front().q, back.points.back().q);
   exchange.motion.Append(back);
   CHECK_FALSE(exchange.motion.over());
