@@ -20,7 +20,7 @@ Campaign Load(const TemporaryFolder& folder, const std::string& text,
   return LoadCampaign(folder / "C.toml", overrides, std::nullopt);
 }
 
-void CheckRefused(const std::string& text, ErrorKind kind, const std::string& said) {
+void CheckTextRefused(const std::string& text, ErrorKind kind, const std::string& said) {
   INFO(text);
   const TemporaryFolder folder;
   try {
@@ -119,30 +119,31 @@ TEST_CASE("files of before, which call variants arms, are read the same") {
   const std::string rest = "\npart = \"hose_b\"\ncount = [2, 3]\n";
   const CampaignIdentity now = IdentityOf(Load(folder, "[[variant]]" + rest), "1");
   CHECK(IdentityOf(Load(folder, "[[arm]]" + rest), "1").document == now.document);
-  CheckRefused("[[variant]]\n[[arm]]\n", ErrorKind::kConfig, "use [[variant]]");
+  CheckTextRefused("[[variant]]\n[[arm]]\n", ErrorKind::kConfig, "use [[variant]]");
 }
 
 TEST_CASE("a bad campaign file is refused with its place and what is allowed") {
-  CheckRefused("rounds = 0\n[[variant]]\n", ErrorKind::kConfig,
-               "C.toml:1:10: rounds: is 0, allowed");
-  CheckRefused("rounds = 2\n", ErrorKind::kConfig, "no [[variant]] table");
-  CheckRefused("round = 2\n[[variant]]\n", ErrorKind::kConfig, "nearest known is 'rounds'");
-  CheckRefused("[[variant]]\nprt = \"pvc_a\"\n", ErrorKind::kConfig, "nearest known is 'part'");
-  CheckRefused("[[variant]]\npart = \"pvc_b\"\n", ErrorKind::kMissing, "pvc_a");
-  CheckRefused("[[variant]]\ncount = 0\n", ErrorKind::kConfig, "C.toml:2:9: pile.count: is 0");
-  CheckRefused("[[variant]]\ncount = [7, \"x\"]\n", ErrorKind::kConfig, "C.toml:2:13");
-  CheckRefused("[[variant]]\ncount = []\n", ErrorKind::kConfig, "empty list");
-  CheckRefused("[[variant]]\nprofile = \"bst\"\n", ErrorKind::kConfig, "best");
-  CheckRefused("[[variant]]\nset = {planer.exclude_free = true}\n", ErrorKind::kConfig, "planer");
-  CheckRefused("[[variant]]\nset = {seed = 4}\n", ErrorKind::kConfig, "give it at the top");
-  CheckRefused("[[variant]]\nset = 4\n", ErrorKind::kConfig, "a table");
-  CheckRefused("[[variant]]\ncount = 7\nset = {pile.count = 8}\n", ErrorKind::kConfig,
-               "given twice");
-  CheckRefused("[[variant]]\n[[variant]]\n", ErrorKind::kConfig,
-               "two variants are called 'pvc_a x 7'");
-  CheckRefused("variant = 3\n", ErrorKind::kConfig, "[[variant]]");
-  CheckRefused("[[variant]]\nset = {pile.file = \"no.csv\"}\n", ErrorKind::kMissing, "no.csv");
-  CheckRefused("[[variant]]\nset = {bin.mesh = \"no.stl\"}\n", ErrorKind::kMissing, "no.stl");
+  CheckTextRefused("rounds = 0\n[[variant]]\n", ErrorKind::kConfig,
+                   "C.toml:1:10: rounds: is 0, allowed");
+  CheckTextRefused("rounds = 2\n", ErrorKind::kConfig, "no [[variant]] table");
+  CheckTextRefused("round = 2\n[[variant]]\n", ErrorKind::kConfig, "nearest known is 'rounds'");
+  CheckTextRefused("[[variant]]\nprt = \"pvc_a\"\n", ErrorKind::kConfig, "nearest known is 'part'");
+  CheckTextRefused("[[variant]]\npart = \"pvc_b\"\n", ErrorKind::kMissing, "pvc_a");
+  CheckTextRefused("[[variant]]\ncount = 0\n", ErrorKind::kConfig, "C.toml:2:9: pile.count: is 0");
+  CheckTextRefused("[[variant]]\ncount = [7, \"x\"]\n", ErrorKind::kConfig, "C.toml:2:13");
+  CheckTextRefused("[[variant]]\ncount = []\n", ErrorKind::kConfig, "empty list");
+  CheckTextRefused("[[variant]]\nprofile = \"bst\"\n", ErrorKind::kConfig, "best");
+  CheckTextRefused("[[variant]]\nset = {planer.exclude_free = true}\n", ErrorKind::kConfig,
+                   "planer");
+  CheckTextRefused("[[variant]]\nset = {seed = 4}\n", ErrorKind::kConfig, "give it at the top");
+  CheckTextRefused("[[variant]]\nset = 4\n", ErrorKind::kConfig, "a table");
+  CheckTextRefused("[[variant]]\ncount = 7\nset = {pile.count = 8}\n", ErrorKind::kConfig,
+                   "given twice");
+  CheckTextRefused("[[variant]]\n[[variant]]\n", ErrorKind::kConfig,
+                   "two variants are called 'pvc_a x 7'");
+  CheckTextRefused("variant = 3\n", ErrorKind::kConfig, "[[variant]]");
+  CheckTextRefused("[[variant]]\nset = {pile.file = \"no.csv\"}\n", ErrorKind::kMissing, "no.csv");
+  CheckTextRefused("[[variant]]\nset = {bin.mesh = \"no.stl\"}\n", ErrorKind::kMissing, "no.stl");
 }
 
 TEST_CASE("seeds of rounds are the variants' in common, differ and depend on the campaign's seed") {

@@ -29,8 +29,8 @@ void RunShard(const Campaign& campaign, const std::string& folder, Shard shard) 
       campaign, [&](const RoundTask& task) { return FakeRound(campaign, task); }, options);
 }
 
-void CheckRefused(const std::vector<std::string>& folders, ErrorKind kind,
-                  const std::string& said) {
+void CheckShardsRefused(const std::vector<std::string>& folders, ErrorKind kind,
+                        const std::string& said) {
   INFO(said);
   try {
     ReadShards(folders);
@@ -48,23 +48,23 @@ TEST_CASE("missing rounds, doubled rounds and foreign shards are errors that nam
   const Campaign campaign = FakeCampaign(12, 2);
   RunShard(campaign, folder / "a", {0, 3});
   RunShard(campaign, folder / "b", {1, 3});
-  CheckRefused({folder / "a", folder / "b"}, ErrorKind::kBadData,
-               "variant 0 ('variant 0') lacks 4 of 12 rounds: 2, 5, 8, 11");
+  CheckShardsRefused({folder / "a", folder / "b"}, ErrorKind::kBadData,
+                     "variant 0 ('variant 0') lacks 4 of 12 rounds: 2, 5, 8, 11");
   RunShard(campaign, folder / "c", {2, 3});
   CHECK(ReadShards({folder / "c", folder / "a", folder / "b"}).records.size() == 24);
   RunShard(campaign, folder / "again", {1, 3});
-  CheckRefused({folder / "a", folder / "b", folder / "c", folder / "again"}, ErrorKind::kBadData,
-               "variant 0 round 1 stands twice");
-  CheckRefused({folder / "a", folder / "b", folder / "c", folder / "again"}, ErrorKind::kBadData,
-               "with the same rows");
+  CheckShardsRefused({folder / "a", folder / "b", folder / "c", folder / "again"},
+                     ErrorKind::kBadData, "variant 0 round 1 stands twice");
+  CheckShardsRefused({folder / "a", folder / "b", folder / "c", folder / "again"},
+                     ErrorKind::kBadData, "with the same rows");
   RunShard(FakeCampaign(12, 2, 7), folder / "other", {1, 3});
-  CheckRefused({folder / "a", folder / "other"}, ErrorKind::kBadData, "seed is 1 against 7");
+  CheckShardsRefused({folder / "a", folder / "other"}, ErrorKind::kBadData, "seed is 1 against 7");
   fs::copy_file(folder / "other/shard-00001-of-00003.jsonl",
                 folder / "b/shard-00001-of-00003.jsonl", fs::copy_options::overwrite_existing);
-  CheckRefused({folder / "a", folder / "b", folder / "c"}, ErrorKind::kBadData,
-               "belong to another campaign");
+  CheckShardsRefused({folder / "a", folder / "b", folder / "c"}, ErrorKind::kBadData,
+                     "belong to another campaign");
   fs::create_directories(folder / "empty");
-  CheckRefused({folder / "empty"}, ErrorKind::kMissing, "holds no campaign");
+  CheckShardsRefused({folder / "empty"}, ErrorKind::kMissing, "holds no campaign");
 }
 
 TEST_CASE("doubled rounds that differ say in what") {
@@ -82,7 +82,7 @@ TEST_CASE("doubled rounds that differ say in what") {
         return out;
       },
       options);
-  CheckRefused({folder / "a", folder / "b"}, ErrorKind::kBadData, "differs: row 1: outcome");
+  CheckShardsRefused({folder / "a", folder / "b"}, ErrorKind::kBadData, "differs: row 1: outcome");
 }
 
 TEST_CASE("a merged folder reads back as what was merged and merges nothing else over it") {

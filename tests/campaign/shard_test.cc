@@ -18,8 +18,8 @@ Shard Choose(const std::string& shard, std::optional<int> shards, const Variable
   });
 }
 
-void CheckRefused(const std::string& shard, std::optional<int> shards, const Variables& variables,
-                  const std::string& said) {
+void CheckChoiceRefused(const std::string& shard, std::optional<int> shards,
+                        const Variables& variables, const std::string& said) {
   INFO(said);
   try {
     Choose(shard, shards, variables);
@@ -43,13 +43,13 @@ TEST_CASE("shards count from 0 and every round belongs to exactly one") {
 }
 
 TEST_CASE("a shard that does not exist is refused with what there is") {
-  CheckRefused("5/4", {}, {}, "the last of 4 is 3/4");
-  CheckRefused("4/4", {}, {}, "the last of 4 is 3/4");
-  CheckRefused("0/0", {}, {}, "i/n is needed");
-  CheckRefused("-1/4", {}, {}, "i/n is needed");
-  CheckRefused("1", {}, {}, "i/n is needed");
-  CheckRefused("1/4x", {}, {}, "i/n is needed");
-  CheckRefused("", 0, {}, "--shards 0");
+  CheckChoiceRefused("5/4", {}, {}, "the last of 4 is 3/4");
+  CheckChoiceRefused("4/4", {}, {}, "the last of 4 is 3/4");
+  CheckChoiceRefused("0/0", {}, {}, "i/n is needed");
+  CheckChoiceRefused("-1/4", {}, {}, "i/n is needed");
+  CheckChoiceRefused("1", {}, {}, "i/n is needed");
+  CheckChoiceRefused("1/4x", {}, {}, "i/n is needed");
+  CheckChoiceRefused("", 0, {}, "--shards 0");
 }
 
 TEST_CASE("the shard comes from the option, else from a scheduler, else it is the whole") {
@@ -72,29 +72,29 @@ TEST_CASE("the shard comes from the option, else from a scheduler, else it is th
 }
 
 TEST_CASE("sources that contradict each other are an error that names both") {
-  CheckRefused("1/4", {}, {{"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "4"}},
-               "--shard 1/4 contradicts SLURM_ARRAY_TASK_ID=3");
-  CheckRefused("3/5", {}, {{"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "4"}},
-               "4 shards or 5");
-  CheckRefused("1/4", {}, {{"JOB_COMPLETION_INDEX", "2"}}, "JOB_COMPLETION_INDEX=2");
-  CheckRefused("1/4", 4, {{"PARALLEL_SEQ", "1"}}, "PARALLEL_SEQ=1");
-  CheckRefused("1/4", 5, {}, "4 shards or 5");
-  CheckRefused("", 4, {{"PARALLEL_SEQ", "2"}, {"JOB_COMPLETION_INDEX", "2"}}, "contradicts");
+  CheckChoiceRefused("1/4", {}, {{"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "4"}},
+                     "--shard 1/4 contradicts SLURM_ARRAY_TASK_ID=3");
+  CheckChoiceRefused("3/5", {}, {{"SLURM_ARRAY_TASK_ID", "3"}, {"SLURM_ARRAY_TASK_COUNT", "4"}},
+                     "4 shards or 5");
+  CheckChoiceRefused("1/4", {}, {{"JOB_COMPLETION_INDEX", "2"}}, "JOB_COMPLETION_INDEX=2");
+  CheckChoiceRefused("1/4", 4, {{"PARALLEL_SEQ", "1"}}, "PARALLEL_SEQ=1");
+  CheckChoiceRefused("1/4", 5, {}, "4 shards or 5");
+  CheckChoiceRefused("", 4, {{"PARALLEL_SEQ", "2"}, {"JOB_COMPLETION_INDEX", "2"}}, "contradicts");
 }
 
 TEST_CASE("a scheduler's index without a count, beyond it, or no number is an error") {
-  CheckRefused("", {}, {{"PARALLEL_SEQ", "2"}}, "give --shards n");
-  CheckRefused("", {}, {{"JOB_COMPLETION_INDEX", "2"}}, "give --shards n");
-  CheckRefused("", {}, {{"SLURM_ARRAY_TASK_ID", "2"}}, "give --shards n");
-  CheckRefused("", 4, {}, "which of them");
-  CheckRefused("", 4, {{"JOB_COMPLETION_INDEX", "4"}}, "no such shard of 4");
-  CheckRefused("", 4, {{"PARALLEL_SEQ", "0"}}, "no such shard of 4");
-  CheckRefused("", 4, {{"PARALLEL_SEQ", "two"}}, "PARALLEL_SEQ=two");
-  CheckRefused("", {},
-               {{"SLURM_ARRAY_TASK_ID", "9"},
-                {"SLURM_ARRAY_TASK_COUNT", "2"},
-                {"SLURM_ARRAY_TASK_MIN", "3"}},
-               "the array has gaps");
+  CheckChoiceRefused("", {}, {{"PARALLEL_SEQ", "2"}}, "give --shards n");
+  CheckChoiceRefused("", {}, {{"JOB_COMPLETION_INDEX", "2"}}, "give --shards n");
+  CheckChoiceRefused("", {}, {{"SLURM_ARRAY_TASK_ID", "2"}}, "give --shards n");
+  CheckChoiceRefused("", 4, {}, "which of them");
+  CheckChoiceRefused("", 4, {{"JOB_COMPLETION_INDEX", "4"}}, "no such shard of 4");
+  CheckChoiceRefused("", 4, {{"PARALLEL_SEQ", "0"}}, "no such shard of 4");
+  CheckChoiceRefused("", 4, {{"PARALLEL_SEQ", "two"}}, "PARALLEL_SEQ=two");
+  CheckChoiceRefused("", {},
+                     {{"SLURM_ARRAY_TASK_ID", "9"},
+                      {"SLURM_ARRAY_TASK_COUNT", "2"},
+                      {"SLURM_ARRAY_TASK_MIN", "3"}},
+                     "the array has gaps");
 }
 
 }  // namespace tubetwin

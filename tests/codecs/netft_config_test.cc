@@ -18,13 +18,13 @@ constexpr const char* kPage = R"(<?xml version="1.0" encoding="ISO-8859-1"?>
 <comrdte>Enabled</comrdte><comrdtrate>7000</comrdtrate></netft>
 )";
 
-NetftPage Decoded(const std::string& xml) {
+NetftPage DecodedPage(const std::string& xml) {
   const auto page = DecodeNetftPage(xml);
   if (const auto* error = std::get_if<DecodeError>(&page)) FAIL(error->reason);
   return std::get<NetftPage>(page);
 }
 
-std::string Reason(const std::string& xml) {
+std::string PageReason(const std::string& xml) {
   const auto page = DecodeNetftPage(xml);
   REQUIRE(std::holds_alternative<DecodeError>(page));
   return std::get<DecodeError>(page).reason;
@@ -37,7 +37,7 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST_CASE("The configuration page of a Net F/T box is read", "[unit]") {
-  const NetftPage page = Decoded(kPage);
+  const NetftPage page = DecodedPage(kPage);
   CHECK(page.product == "ATI Industrial Automation & Net F/T");
   CHECK(page.counts_per_force == 1e6);
   CHECK(page.counts_per_torque == 1e6);
@@ -52,7 +52,7 @@ TEST_CASE("The configuration page of a Net F/T box is read", "[unit]") {
 }
 
 TEST_CASE("Other units of the box are converted, unknown ones are refused", "[unit]") {
-  NetftPage page = Decoded(kPage);
+  NetftPage page = DecodedPage(kPage);
   page.force_unit = "lbf";
   page.torque_unit = "lbf-in";
   const auto pounds = std::get<RdtScale>(ScaleOf(page));
@@ -97,14 +97,14 @@ TEST_CASE("Numbers of the pages are whole where they are, and never have an expo
 }
 
 TEST_CASE("A page that is none says what is wrong", "[unit]") {
-  CHECK_THAT(Reason(""), Contains("no <cfgcpf>"));
-  CHECK_THAT(Reason(Replaced(kPage, "<cfgcpt>", "<cfgcpx>")), Contains("no <cfgcpt>"));
-  CHECK_THAT(Reason(Replaced(kPage, "</scfgfu>", "")), Contains("no <scfgfu>"));
-  CHECK_THAT(Reason(Replaced(kPage, "1000000", "0")), Contains("<cfgcpf> is \"0\""));
-  CHECK_THAT(Reason(Replaced(kPage, "1000000", "inf")), Contains("a positive number"));
-  CHECK_THAT(Reason(Replaced(kPage, "1000000", "1e6x")), Contains("\"1e6x\""));
-  CHECK_THAT(Reason(Replaced(kPage, "0x00000000", "0x123456789")), Contains("<runstat>"));
-  CHECK_THAT(Reason(std::string(70000, ' ')), Contains("70000 bytes"));
+  CHECK_THAT(PageReason(""), Contains("no <cfgcpf>"));
+  CHECK_THAT(PageReason(Replaced(kPage, "<cfgcpt>", "<cfgcpx>")), Contains("no <cfgcpt>"));
+  CHECK_THAT(PageReason(Replaced(kPage, "</scfgfu>", "")), Contains("no <scfgfu>"));
+  CHECK_THAT(PageReason(Replaced(kPage, "1000000", "0")), Contains("<cfgcpf> is \"0\""));
+  CHECK_THAT(PageReason(Replaced(kPage, "1000000", "inf")), Contains("a positive number"));
+  CHECK_THAT(PageReason(Replaced(kPage, "1000000", "1e6x")), Contains("\"1e6x\""));
+  CHECK_THAT(PageReason(Replaced(kPage, "0x00000000", "0x123456789")), Contains("<runstat>"));
+  CHECK_THAT(PageReason(std::string(70000, ' ')), Contains("70000 bytes"));
 }
 
 TEST_CASE("Every page comes back from its XML", "[unit]") {
@@ -122,7 +122,7 @@ TEST_CASE("Every page comes back from its XML", "[unit]") {
     page.torque_unit = torques[stream.Index(6)];
     page.rate_Hz = stream.Index(2) == 0 ? 0 : 1 + stream.Index(7000);
     page.status = stream.Index(65536) << 16 | stream.Index(65536);
-    REQUIRE(Decoded(EncodeNetftPage(page)) == page);
+    REQUIRE(DecodedPage(EncodeNetftPage(page)) == page);
     REQUIRE(std::holds_alternative<RdtScale>(ScaleOf(page)));
   }
 }

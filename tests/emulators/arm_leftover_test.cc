@@ -15,8 +15,6 @@ namespace sm = simple_message;
 using sm::NotReady;
 using sm::Result;
 
-std::int32_t Code(NotReady why) { return static_cast<std::int32_t>(why); }
-
 }  // namespace
 
 TEST_CASE("a disconnection ends the job and answers nothing", "[unit]") {

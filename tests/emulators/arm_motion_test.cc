@@ -16,9 +16,6 @@ using sm::Result;
 
 constexpr double kFloat_rad = 3e-7;  ///< Half a step of a float32 at 4 rad, and some.
 
-std::int32_t Code(Invalid why) { return static_cast<std::int32_t>(why); }
-std::int32_t Code(NotReady why) { return static_cast<std::int32_t>(why); }
-
 }  // namespace
 
 TEST_CASE("the motion port answers the documented bytes", "[unit]") {

@@ -16,9 +16,6 @@ using sm::Invalid;
 using sm::NotReady;
 using sm::Result;
 
-std::int32_t Code(Invalid why) { return static_cast<std::int32_t>(why); }
-std::int32_t Code(NotReady why) { return static_cast<std::int32_t>(why); }
-
 /// What a point is answered with that differs from a good first one by `change`.
 std::pair<Result, std::int32_t> AskPoint(ArmRig& rig, ArmRig::Socket& motion,
                                          const std::function<void(sm::JointPoint&)>& change) {

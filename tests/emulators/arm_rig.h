@@ -60,6 +60,10 @@ simple_message::MotionReply SendPoint(ArmRig::Socket& motion, std::int32_t seque
                                       const JointVector& q,
                                       const JointVector& qd = JointVector::Zero());
 
+/// As a reply's subcode says it.
+inline std::int32_t Code(simple_message::Invalid why) { return static_cast<std::int32_t>(why); }
+inline std::int32_t Code(simple_message::NotReady why) { return static_cast<std::int32_t>(why); }
+
 /// Starts the job that waits for motion; it must.
 void Ready(ArmRig::Socket& motion);
 /// Sends a point again as long as the controller is busy, as clients do.

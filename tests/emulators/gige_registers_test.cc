@@ -14,7 +14,7 @@ using Catch::Matchers::StartsWith;
 
 constexpr std::uint32_t kHere = 0x7f000001;
 
-struct Bench {
+struct RegisterBench {
   GvcpStatus Status(GvcpCommand command, const std::string& data, bool controller = true) {
     return Ask(command, data, controller).first;
   }
@@ -46,8 +46,9 @@ struct Bench {
 std::uint32_t Bits(float value) { return std::bit_cast<std::uint32_t>(value); }
 
 TEST_CASE("The description is where the first URL says, whole", "[unit]") {
-  Bench bench;
-  const auto [status, url] = bench.Ask(GvcpCommand::kReadMemory, Bench::Words({gige::kUrl, 512}));
+  RegisterBench bench;
+  const auto [status, url] =
+      bench.Ask(GvcpCommand::kReadMemory, RegisterBench::Words({gige::kUrl, 512}));
   CHECK(status == GvcpStatus::kSuccess);
   CHECK_THAT(url.substr(4), StartsWith("Local:scanner.xml;10000;"));
   const std::uint32_t size =
@@ -55,7 +56,7 @@ TEST_CASE("The description is where the first URL says, whole", "[unit]") {
   std::string xml;
   while (xml.size() < size) {
     const auto at = static_cast<std::uint32_t>(0x10000 + xml.size());
-    const auto [read, part] = bench.Ask(GvcpCommand::kReadMemory, Bench::Words({at, 512}));
+    const auto [read, part] = bench.Ask(GvcpCommand::kReadMemory, RegisterBench::Words({at, 512}));
     REQUIRE(read == GvcpStatus::kSuccess);
     REQUIRE(part.size() == 516);
     xml += part.substr(4);
@@ -66,20 +67,21 @@ TEST_CASE("The description is where the first URL says, whole", "[unit]") {
 }
 
 TEST_CASE("No address and no value reaches beyond the registers", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   // The datagram that ended the camera library's own fake camera.
-  CHECK(bench.Status(GvcpCommand::kReadRegister, Bench::Words({0x12000})) ==
+  CHECK(bench.Status(GvcpCommand::kReadRegister, RegisterBench::Words({0x12000})) ==
         GvcpStatus::kInvalidAddress);
-  CHECK(bench.Status(GvcpCommand::kReadRegister, Bench::Words({0xfffffffc})) ==
+  CHECK(bench.Status(GvcpCommand::kReadRegister, RegisterBench::Words({0xfffffffc})) ==
         GvcpStatus::kInvalidAddress);
-  CHECK(bench.Status(GvcpCommand::kReadRegister, Bench::Words({2})) == GvcpStatus::kBadAlignment);
-  CHECK(bench.Status(GvcpCommand::kReadMemory, Bench::Words({0xffff0000, 4})) ==
+  CHECK(bench.Status(GvcpCommand::kReadRegister, RegisterBench::Words({2})) ==
+        GvcpStatus::kBadAlignment);
+  CHECK(bench.Status(GvcpCommand::kReadMemory, RegisterBench::Words({0xffff0000, 4})) ==
         GvcpStatus::kInvalidAddress);
-  CHECK(bench.Status(GvcpCommand::kReadMemory, Bench::Words({0, 0xfffc})) ==
+  CHECK(bench.Status(GvcpCommand::kReadMemory, RegisterBench::Words({0, 0xfffc})) ==
         GvcpStatus::kInvalidParameter);
-  CHECK(bench.Status(GvcpCommand::kReadMemory, Bench::Words({0, 0})) ==
+  CHECK(bench.Status(GvcpCommand::kReadMemory, RegisterBench::Words({0, 0})) ==
         GvcpStatus::kInvalidParameter);
-  CHECK(bench.Status(GvcpCommand::kWriteMemory, Bench::Words({0xfffffffc, 1, 2})) ==
+  CHECK(bench.Status(GvcpCommand::kWriteMemory, RegisterBench::Words({0xfffffffc, 1, 2})) ==
         GvcpStatus::kInvalidAddress);
   CHECK(bench.Write(0x10000, 1) == GvcpStatus::kInvalidAddress);
   for (const std::uint32_t address : {gige::kVendor, gige::kWidth, gige::kUrl, gige::kCapability}) {
@@ -95,21 +97,21 @@ TEST_CASE("No address and no value reaches beyond the registers", "[unit]") {
 }
 
 TEST_CASE("Only who has control writes", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   CHECK(bench.Write(gige::kTriggerMode, 1) == GvcpStatus::kSuccess);
   CHECK(bench.Write(gige::kTriggerSource, 1) == GvcpStatus::kSuccess);
   CHECK(bench.Write(gige::kTrigger, 1, false) == GvcpStatus::kAccessDenied);
   CHECK(bench.registers.Get(gige::kTrigger) == 0);
   CHECK(bench.Write(gige::kTrigger, 1) == GvcpStatus::kSuccess);
   CHECK(bench.registers.Get(gige::kTrigger) == 1);
-  const auto [status, index] =
-      bench.Ask(GvcpCommand::kWriteRegister, Bench::Words({gige::kTrigger, 0, gige::kVendor, 0}));
+  const auto [status, index] = bench.Ask(
+      GvcpCommand::kWriteRegister, RegisterBench::Words({gige::kTrigger, 0, gige::kVendor, 0}));
   CHECK(status == GvcpStatus::kWriteProtect);
-  CHECK(index == Bench::Words({1}));  // So many were done.
+  CHECK(index == RegisterBench::Words({1}));  // So many were done.
 }
 
 TEST_CASE("User sets keep what was set, and the one as shipped stays so", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   const std::uint32_t shipped = bench.registers.Get(gige::kExposure);
   CHECK(bench.Write(gige::kUserSetSave, 1) == GvcpStatus::kWriteProtect);
   CHECK(bench.Write(gige::kUserSet, 1) == GvcpStatus::kSuccess);
@@ -134,7 +136,7 @@ TEST_CASE("User sets keep what was set, and the one as shipped stays so", "[unit
 }
 
 TEST_CASE("What frames hold is what was enabled, in the order of ids", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   REQUIRE(bench.registers.FrameSettings().components.size() == 1);  // As shipped: the range.
   CHECK(bench.registers.Get(gige::kPayloadSize) == 160 * 120 * 12);
   CHECK(bench.Enable(ScanComponent::kNormal) == GvcpStatus::kSuccess);
@@ -163,7 +165,7 @@ TEST_CASE("What frames hold is what was enabled, in the order of ids", "[unit]")
 }
 
 TEST_CASE("Each component has its own pixel formats", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   const auto format = [&bench](ScanComponent component, std::uint32_t value) {
     return bench.WriteBlock(component, gige::kPixelFormat, value) == GvcpStatus::kSuccess;
   };
@@ -182,7 +184,7 @@ TEST_CASE("Each component has its own pixel formats", "[unit]") {
 }
 
 TEST_CASE("Packets are as large as the interface takes them", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   CHECK(bench.registers.Get(gige::kPacketSize) == 1500);
   CHECK(bench.Write(gige::kPacketSize, 1504) == GvcpStatus::kInvalidParameter);
   CHECK(bench.Write(gige::kPacketSize, 572) == GvcpStatus::kInvalidParameter);
@@ -198,7 +200,7 @@ TEST_CASE("Packets are as large as the interface takes them", "[unit]") {
 }
 
 TEST_CASE("Only a scanner that waits for software triggers takes one", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   CHECK(bench.registers.free_runs());
   CHECK(bench.Write(gige::kTrigger, 1) == GvcpStatus::kAccessDenied);
   CHECK(bench.Write(gige::kTriggerMode, 1) == GvcpStatus::kSuccess);
@@ -211,7 +213,7 @@ TEST_CASE("Only a scanner that waits for software triggers takes one", "[unit]")
 }
 
 TEST_CASE("A reset starts it anew, with the user set that was chosen for that", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   CHECK(bench.Write(gige::kUserSetDefault, 3) == GvcpStatus::kInvalidParameter);
   CHECK(bench.Write(gige::kUserSet, 2) == GvcpStatus::kSuccess);
   CHECK(bench.Enable(ScanComponent::kIntensity) == GvcpStatus::kSuccess);
@@ -229,19 +231,19 @@ TEST_CASE("A reset starts it anew, with the user set that was chosen for that", 
 }
 
 TEST_CASE("It has the names of a PhoXi, and says that it is none", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   CHECK_THAT(bench.Read(gige::kVendor, 32), StartsWith(std::string("Photoneo\0", 9)));
   CHECK_THAT(bench.Read(gige::kModel, 32), StartsWith(std::string("PhoXi3DScan\0", 12)));
   CHECK_THAT(bench.Read(gige::kManufacturerInfo, 48), StartsWith("emulated by tubetwin"));
-  CHECK(bench.Status(GvcpCommand::kWriteMemory,
-                     Bench::Words({gige::kUserName}) + std::string("left cell\0\0\0", 12)) ==
+  CHECK(bench.Status(GvcpCommand::kWriteMemory, RegisterBench::Words({gige::kUserName}) +
+                                                    std::string("left cell\0\0\0", 12)) ==
         GvcpStatus::kSuccess);
   const auto found = bench.Ask(GvcpCommand::kDiscovery, "").second;
   CHECK_THAT(found.substr(gige::kUserName), StartsWith("left cell"));
 }
 
 TEST_CASE("Random requests are answered or refused, and the scanner stays what it is", "[unit]") {
-  Bench bench;
+  RegisterBench bench;
   for (std::uint64_t round = 0; round < 20000; ++round) {
     RandomStream stream(1, round, "gvcp garbage");
     constexpr std::uint16_t kCommands[] = {0x02, 0x40, 0x80, 0x82, 0x84, 0x86, 0x99};

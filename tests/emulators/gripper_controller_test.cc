@@ -9,7 +9,7 @@
 namespace tubetwin {
 namespace {
 
-struct Bench {
+struct ControllerBench {
   MovingFingers fingers;
   GripperController controller{fingers, PaperScale()};
   TimeNs now{0};
@@ -48,7 +48,7 @@ struct Bench {
 };
 
 TEST_CASE("Activation opens and closes the fingers once and ends open", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   GripperStatus status = bench.Read();
   CHECK_FALSE(status.activate);
   CHECK(status.activation == GripperActivation::kReset);
@@ -76,7 +76,7 @@ TEST_CASE("Activation opens and closes the fingers once and ends open", "[unit]"
 }
 
 TEST_CASE("A request moves the fingers as its bytes say", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   GripperAction action = bench.Activate();
   action.go_to = true;
   action.position = 116;
@@ -103,7 +103,7 @@ TEST_CASE("A request moves the fingers as its bytes say", "[unit]") {
 }
 
 TEST_CASE("What lies between the fingers is felt, and missed when it is gone", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   bench.fingers.object_m = 0.025;
   GripperAction action;
   action.activate = true;
@@ -121,7 +121,7 @@ TEST_CASE("What lies between the fingers is felt, and missed when it is gone", "
 }
 
 TEST_CASE("A lost object is only told, until the next request", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   GripperAction action = bench.Activate();
   bench.fingers.object_m = 0.025;
   action = bench.Close(action);
@@ -138,7 +138,7 @@ TEST_CASE("A lost object is only told, until the next request", "[unit]") {
 }
 
 TEST_CASE("A request during activation waits and says so", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   GripperAction action;
   action.activate = true;
   bench.Write(action);
@@ -152,7 +152,7 @@ TEST_CASE("A request during activation waits and says so", "[unit]") {
 }
 
 TEST_CASE("A request without activation is a fault and moves nothing", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   GripperAction action;
   action.go_to = true;
   action.position = 255;
@@ -165,7 +165,7 @@ TEST_CASE("A request without activation is a fault and moves nothing", "[unit]")
 }
 
 TEST_CASE("A second of silence is told once", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   (void)bench.Activate();
   bench.now += FromSeconds(1.001);
   bench.controller.Tick(bench.now);
@@ -175,7 +175,7 @@ TEST_CASE("A second of silence is told once", "[unit]") {
 }
 
 TEST_CASE("Automatic release opens slowly and ends in a fault that activation clears", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   GripperAction action = bench.Close(bench.Activate());
   bench.Advance(1.5);
   REQUIRE(bench.fingers.opening_m() == 0.0);
@@ -193,7 +193,7 @@ TEST_CASE("Automatic release opens slowly and ends in a fault that activation cl
 }
 
 TEST_CASE("A major fault holds what is held until the gripper is activated anew", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   GripperAction action = bench.Activate();
   bench.fingers.object_m = 0.025;
   action = bench.Close(action);
@@ -215,7 +215,7 @@ TEST_CASE("A major fault holds what is held until the gripper is activated anew"
 }
 
 TEST_CASE("A fault stops fingers that open, and nothing else opens them", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   GripperAction action = bench.Close(bench.Activate());
   bench.Advance(1.5);
   action.position = 0;
@@ -231,7 +231,7 @@ TEST_CASE("Without rGTO or rACT moving fingers stop, and pressing ones press on"
   for (const bool closing : {true, false}) {
     for (const bool reset : {true, false}) {
       CAPTURE(closing, reset);
-      Bench bench;
+      ControllerBench bench;
       GripperAction action = bench.Activate();
       action.go_to = true;
       action.speed = action.force = 128;
@@ -253,7 +253,7 @@ TEST_CASE("Without rGTO or rACT moving fingers stop, and pressing ones press on"
       CHECK(bench.fingers.opening_m() == Approx(stopped_m).margin(1e-9));
     }
   }
-  Bench holding;
+  ControllerBench holding;
   GripperAction action = holding.Activate();
   holding.fingers.object_m = 0.025;
   action = holding.Close(action);
@@ -276,7 +276,7 @@ TEST_CASE("The registers may begin elsewhere, both at 0", "[unit]") {
 }
 
 TEST_CASE("Registers can be read and written in part, and no others", "[unit]") {
-  Bench bench;
+  ControllerBench bench;
   (void)bench.Activate();
   bench.controller.Write(kGripperActionStart + 1, {0x0042, 0x8040});
   const auto words = bench.controller.Read(kGripperActionStart, 3);

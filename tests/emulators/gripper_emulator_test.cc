@@ -26,7 +26,7 @@ using test::ToSpacedHex;
 
 using Catch::Matchers::Contains;
 
-GripperEmulatorConfig OnAnyPort() {
+GripperEmulatorConfig GripperOnAnyPort() {
   GripperEmulatorConfig config;
   config.scale = PaperScale();
   config.port = 0;
@@ -34,8 +34,8 @@ GripperEmulatorConfig OnAnyPort() {
 }
 
 /// The emulator and its cell, in which the test decides when a period passes.
-struct Bench {
-  explicit Bench(const GripperEmulatorConfig& config = OnAnyPort())
+struct GripperBench {
+  explicit GripperBench(const GripperEmulatorConfig& config = GripperOnAnyPort())
       : emulator(io, fingers, config) {}
   void Step() {
     now += kControlPeriod;
@@ -50,7 +50,7 @@ struct Bench {
 
 /// A client that only knows bytes.
 struct TcpClient {
-  explicit TcpClient(Bench& served) : bench(served), socket(bench.io) {
+  explicit TcpClient(GripperBench& served) : bench(served), socket(bench.io) {
     socket.connect(
         {asio::ip::make_address("127.0.0.1"), static_cast<std::uint16_t>(bench.emulator.port())});
     socket.non_blocking(true);
@@ -74,12 +74,12 @@ struct TcpClient {
     Send(FromHex(hex));
     return Receive();
   }
-  Bench& bench;
+  GripperBench& bench;
   asio::ip::tcp::socket socket;
 };
 
 TEST_CASE("Modbus TCP requests are answered with the registers", "[unit]") {
-  Bench bench;
+  GripperBench bench;
   TcpClient client(bench);
   CHECK(client.Ask("0001 0000 0006 09 03 07D0 0003") ==
         ToSpacedHex(FromHex("0001 0000 0009 09 03 06 0000 0000 0300")));
@@ -101,7 +101,7 @@ TEST_CASE("Modbus TCP requests are answered with the registers", "[unit]") {
 }
 
 TEST_CASE("Modbus TCP requests that are none of the gripper's are refused", "[unit]") {
-  Bench bench;
+  GripperBench bench;
   TcpClient client(bench);
   const auto [why, request, code] = GENERATE(table<const char*, const char*, const char*>({
       {"address", "0001 0000 0006 09 03 07D0 0011", "83 02"},
@@ -122,7 +122,7 @@ TEST_CASE("Modbus TCP requests that are none of the gripper's are refused", "[un
 }
 
 TEST_CASE("Clients that trickle bytes into every place do not keep an honest one out", "[unit]") {
-  Bench bench;
+  GripperBench bench;
   std::vector<std::unique_ptr<TcpClient>> slow;
   for (int i = 0; i < 8; ++i) slow.push_back(std::make_unique<TcpClient>(bench));
   const std::string head = FromHex("0001 0000 00");
@@ -142,7 +142,7 @@ TEST_CASE("Clients that trickle bytes into every place do not keep an honest one
 }
 
 TEST_CASE("Requests may come in pieces and in heaps", "[unit]") {
-  Bench bench;
+  GripperBench bench;
   TcpClient client(bench);
   const std::string request = FromHex("0001 0000 0006 09 03 07D0 0001");
   for (const char byte : request) {
@@ -157,7 +157,7 @@ TEST_CASE("Requests may come in pieces and in heaps", "[unit]") {
 }
 
 TEST_CASE("Garbage ends its connection and no other", "[unit]") {
-  Bench bench;
+  GripperBench bench;
   TcpClient good(bench);
   for (int round = 0; round < 200; ++round) {
     RandomStream stream(1, static_cast<std::uint64_t>(round), "modbus garbage");
@@ -174,7 +174,7 @@ TEST_CASE("Garbage ends its connection and no other", "[unit]") {
 }
 
 TEST_CASE("A flood of idle connections does not lock the gripper up", "[unit]") {
-  Bench bench;
+  GripperBench bench;
   std::vector<std::unique_ptr<TcpClient>> flood;
   for (int i = 0; i < 40; ++i) {
     flood.push_back(std::make_unique<TcpClient>(bench));
@@ -192,7 +192,7 @@ TEST_CASE("Modbus RTU on a pseudo-terminal gives the frames of the manual", "[un
   config.transport = "rtu";
   config.device = folder / "ttyGRIPPER";
   {
-    Bench bench(config);
+    GripperBench bench(config);
     CHECK(bench.emulator.device() == config.device);
     const int line = ::open(config.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
     REQUIRE(line >= 0);
@@ -228,7 +228,7 @@ TEST_CASE("Modbus RTU on a pseudo-terminal gives the frames of the manual", "[un
 }
 
 TEST_CASE("Link faults do to answers what they say", "[unit]") {
-  Bench bench;
+  GripperBench bench;
   TcpClient client(bench);
   const std::string ask = "0001 0000 0006 09 03 07D0 0001";
   const std::string answer = ToSpacedHex(FromHex("0001 0000 0005 09 03 02 0000"));
@@ -265,12 +265,12 @@ TEST_CASE("Link faults do to answers what they say", "[unit]") {
 }
 
 TEST_CASE("A port in use is a device that cannot be had", "[unit]") {
-  Bench bench;
+  GripperBench bench;
   GripperEmulatorConfig config;
   config.scale = PaperScale();
   config.port = bench.emulator.port();
   try {
-    const Bench second(config);
+    const GripperBench second(config);
     FAIL("no error");
   } catch (const Error& error) {
     CHECK(error.kind() == ErrorKind::kDevice);

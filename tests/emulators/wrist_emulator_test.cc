@@ -24,15 +24,15 @@ struct SetWrist : ForceTorqueSensor {
   WrenchSample sample;
 };
 
-WristEmulatorConfig OnAnyPort(double rate_Hz = 1000) {
+WristEmulatorConfig WristOnAnyPort(double rate_Hz = 1000) {
   WristEmulatorConfig config;
   config.port = config.http_port = 0;
   config.rate_Hz = rate_Hz;
   return config;
 }
 
-struct Bench {
-  explicit Bench(const WristEmulatorConfig& config = OnAnyPort())
+struct WristBench {
+  explicit WristBench(const WristEmulatorConfig& config = WristOnAnyPort())
       : emulator(io, sensor, config), socket(io) {
     sensor.sample.wrench_K.force_N = {1.5, -2.5, 10.0};
     sensor.sample.wrench_K.torque_Nm = {0.1, -0.2, 0.05};
@@ -105,7 +105,7 @@ struct Bench {
 };
 
 TEST_CASE("One sample is the record of the protocol's example", "[unit]") {
-  Bench bench;
+  WristBench bench;
   bench.now = FromSeconds(1.0 / 7.0) - kControlPeriod;  // Sample 1000 of the box.
   bench.Ask(RdtCommand::kStartRealTime, 1);
   bench.Step(50);
@@ -119,7 +119,7 @@ TEST_CASE("One sample is the record of the protocol's example", "[unit]") {
 TEST_CASE("A stream has the set rate in cell time and no gap", "[unit]") {
   const double rate_Hz = GENERATE(1.0, 333.0, 1000.0, 7000.0);
   CAPTURE(rate_Hz);
-  Bench bench(OnAnyPort(rate_Hz));
+  WristBench bench(WristOnAnyPort(rate_Hz));
   bench.Ask(RdtCommand::kStartRealTime);
   std::vector<RdtRecord> records;
   for (int i = 0; i < 2001; ++i) {  // The first of them starts the stream.
@@ -141,7 +141,7 @@ TEST_CASE("A stream has the set rate in cell time and no gap", "[unit]") {
 }
 
 TEST_CASE("A buffered stream has many records in a datagram", "[unit]") {
-  Bench bench(OnAnyPort(7000));
+  WristBench bench(WristOnAnyPort(7000));
   bench.Ask(RdtCommand::kStartBuffered, 100);
   bench.Step(100);
   const auto datagrams = bench.Datagrams();
@@ -151,7 +151,7 @@ TEST_CASE("A buffered stream has many records in a datagram", "[unit]") {
 }
 
 TEST_CASE("Bias is subtracted from what comes after it", "[unit]") {
-  Bench bench;
+  WristBench bench;
   bench.Ask(RdtCommand::kSetBias);
   bench.Step();
   CHECK(bench.One().counts == std::array<std::int32_t, 6>{});
@@ -160,9 +160,9 @@ TEST_CASE("Bias is subtracted from what comes after it", "[unit]") {
 }
 
 TEST_CASE("Saturation is told while it lasts, the threshold until it is reset", "[unit]") {
-  WristEmulatorConfig config = OnAnyPort();
+  WristEmulatorConfig config = WristOnAnyPort();
   config.threshold_N = 50;
-  Bench bench(config);
+  WristBench bench(config);
   CHECK(bench.One().status == 0);
   bench.sensor.sample.saturated = true;
   CHECK(bench.One().status == 0x80020000);
@@ -178,7 +178,7 @@ TEST_CASE("Saturation is told while it lasts, the threshold until it is reset", 
 }
 
 TEST_CASE("Fault scripts change status, sequence and link", "[unit]") {
-  Bench bench;
+  WristBench bench;
   bench.Ask(RdtCommand::kStartRealTime);
   bench.Step(10);
   CHECK(bench.Records().size() == 10);
@@ -237,7 +237,7 @@ TEST_CASE("Fault scripts change status, sequence and link", "[unit]") {
 }
 
 TEST_CASE("The stream belongs to whom asked last", "[unit]") {
-  Bench bench;
+  WristBench bench;
   bench.Ask(RdtCommand::kStartRealTime);
   bench.Step(2);
   udp::socket other(bench.io, udp::v4());
@@ -253,7 +253,7 @@ TEST_CASE("The stream belongs to whom asked last", "[unit]") {
 }
 
 TEST_CASE("Garbage on the wire is ignored", "[unit]") {
-  Bench bench;
+  WristBench bench;
   bench.Ask(RdtCommand::kStartRealTime);
   bench.Step();
   std::uint32_t newest = 0;
@@ -270,9 +270,9 @@ TEST_CASE("Garbage on the wire is ignored", "[unit]") {
 }
 
 TEST_CASE("The configuration page is served over HTTP, and nothing else", "[unit]") {
-  WristEmulatorConfig config = OnAnyPort(500);
+  WristEmulatorConfig config = WristOnAnyPort(500);
   config.counts_per_N = 250000;
-  Bench bench(config);
+  WristBench bench(config);
   const std::string answer = bench.Http("GET /netftapi2.xml HTTP/1.1\r\nHost: box\r\n\r\n");
   CHECK_THAT(answer, Catch::Matchers::StartsWith("HTTP/1.0 200 OK\r\n"));
   const auto page = DecodeNetftPage(answer.substr(answer.find("\r\n\r\n") + 4));
@@ -296,11 +296,11 @@ TEST_CASE("The configuration page is served over HTTP, and nothing else", "[unit
 }
 
 TEST_CASE("A UDP port in use is a device that cannot be had", "[unit]") {
-  Bench bench;
-  WristEmulatorConfig config = OnAnyPort();
+  WristBench bench;
+  WristEmulatorConfig config = WristOnAnyPort();
   config.port = bench.emulator.port();
   try {
-    const Bench second(config);
+    const WristBench second(config);
     FAIL("no error");
   } catch (const Error& error) {
     CHECK(error.kind() == ErrorKind::kDevice);

@@ -27,7 +27,7 @@ struct Take {
   std::string path, heard;
 };
 
-Take Recorded(const TemporaryFolder& folder, bool finish = true) {
+Take RecordedTake(const TemporaryFolder& folder, bool finish = true) {
   Take take{folder / "cell.rec.zst", ""};
   test::RestlessCell cell(8);
   CellRecorder recorder(cell.cell(), {}, take.path);
@@ -40,7 +40,7 @@ Take Recorded(const TemporaryFolder& folder, bool finish = true) {
 
 TEST_CASE("A replayed cell answers everything as it was answered", "[unit]") {
   const TemporaryFolder folder;
-  const Take take = Recorded(folder);
+  const Take take = RecordedTake(folder);
   ReplayCell replay{CellRecording(take.path)};
   CHECK(test::Exercise(replay.cell(), kRounds) == take.heard);
   replay.Result("42");
@@ -66,7 +66,7 @@ TEST_CASE("A replayed cell answers everything as it was answered", "[unit]") {
 TEST_CASE("Whichever command differs is the first difference, and nothing goes on after it",
           "[unit]") {
   const TemporaryFolder folder;
-  const Take take = Recorded(folder);
+  const Take take = RecordedTake(folder);
   std::vector<std::string> kinds;
   for (int planted = 0; planted < 7 * kRounds; ++planted) {
     CAPTURE(planted);
@@ -117,7 +117,7 @@ TEST_CASE("A difference says what was recorded, what was asked, when and after w
 
 TEST_CASE("Less than was recorded and more than was recorded are differences", "[unit]") {
   const TemporaryFolder folder;
-  const Take take = Recorded(folder);
+  const Take take = RecordedTake(folder);
   ReplayCell less{CellRecording(take.path)};
   test::Exercise(less.cell(), kRounds - 1);
   less.Finish();
@@ -133,7 +133,7 @@ TEST_CASE("Less than was recorded and more than was recorded are differences", "
 
 TEST_CASE("Results are compared, captions are not", "[unit]") {
   const TemporaryFolder folder;
-  const Take take = Recorded(folder);
+  const Take take = RecordedTake(folder);
   ReplayCell replay{CellRecording(take.path)};
   replay.Caption("exercising otherwise");
   test::Exercise(replay.cell(), kRounds);
@@ -189,7 +189,7 @@ TEST_CASE("A read of a device that was never read is a difference", "[unit]") {
 
 TEST_CASE("A recording that was cut short agrees up to where it ends", "[unit]") {
   const TemporaryFolder folder;
-  const Take take = Recorded(folder, false);
+  const Take take = RecordedTake(folder, false);
   ReplayCell replay{CellRecording(take.path)};
   CHECK_FALSE(CellRecording(take.path).complete());
   test::Exercise(replay.cell(), kRounds);
@@ -202,7 +202,7 @@ TEST_CASE("A recording that was cut short agrees up to where it ends", "[unit]")
 TEST_CASE("The time can always be asked for; damage that it meets is thrown by the next call",
           "[unit]") {
   const TemporaryFolder folder;
-  const Take take = Recorded(folder);
+  const Take take = RecordedTake(folder);
   std::string bytes = ReadFile(take.path);
   CellRecording whole(take.path);
   const RecordingBlock& block = whole.blocks()[1];
@@ -221,7 +221,7 @@ TEST_CASE("The time can always be asked for; damage that it meets is thrown by t
 
 TEST_CASE("Recording a replay gives the same recording", "[unit]") {
   const TemporaryFolder folder;
-  const Take take = Recorded(folder);
+  const Take take = RecordedTake(folder);
   {
     ReplayCell replay{CellRecording(take.path)};
     CellRecorder recorder(replay.cell(), replay.header(), folder / "again");

@@ -20,7 +20,7 @@ AttemptRecord Attempt(AttemptOutcome outcome, double look_s, double carry_s, int
 }
 
 /// Two placed (20 s and 30 s) and one lost outside (40 s), and 10 s in no attempt.
-RoundRecord Round() {
+RoundRecord RoundOfThree() {
   RoundRecord record = Record(
       0,
       {Attempt(AttemptOutcome::kPlaced, 8, 12, 1), Attempt(AttemptOutcome::kDropped, 10, 30, 1, 1),
@@ -51,7 +51,7 @@ const Lever& Named(const std::vector<Lever>& levers, const std::string& what) {
 }  // namespace
 
 TEST_CASE("phases, computing and the rest are the whole time", "[unit]") {
-  const RoundRecord record = Round();
+  const RoundRecord record = RoundOfThree();
   const auto shares = TimeSharesOf({FactsOf(record)}, HourOf::kCellAndComputing);
   REQUIRE(shares);
   CHECK(shares->placed == 2);
@@ -71,7 +71,7 @@ TEST_CASE("phases, computing and the rest are the whole time", "[unit]") {
 }
 
 TEST_CASE("what would raise the rate is computed from the times, most first", "[unit]") {
-  const RoundRecord record = Round();
+  const RoundRecord record = RoundOfThree();
   const auto shares = TimeSharesOf({FactsOf(record)}, HourOf::kCellAndComputing);
   const std::vector<Lever> levers = LeversOf(*shares);
   const double now = 3600.0 * 2 / 103.0;
@@ -87,7 +87,7 @@ TEST_CASE("what would raise the rate is computed from the times, most first", "[
 }
 
 TEST_CASE("the median pick is a pick that was, of an even number the quicker", "[unit]") {
-  const RoundRecord record = Round();
+  const RoundRecord record = RoundOfThree();
   const auto pick = MedianPickOf({FactsOf(record)}, HourOf::kCellAndComputing);
   REQUIRE(pick);
   CHECK(pick->picks == 2);
@@ -99,7 +99,7 @@ TEST_CASE("the median pick is a pick that was, of an even number the quicker", "
 }
 
 TEST_CASE("rows of earlier versions tell what they know", "[unit]") {
-  RoundRecord record = Round();
+  RoundRecord record = RoundOfThree();
   for (AttemptRecord& attempt : record.attempts) attempt.phases_s.reset();
   const auto shares = TimeSharesOf({FactsOf(record)}, HourOf::kCell);
   CHECK_FALSE(shares->has_phases);

@@ -62,15 +62,15 @@ bool TouchesItself(const Polyline& line, double radius_m) {
 }
 
 /// Rings before the end, in metres from it, with their radius in shares of the tube's.
-struct Ring {
+struct ProfileStep {
   double before_m, share;
 };
 
 /// Shoulders are as good as upright, but rings have to follow one another.
 constexpr double kShoulder_m = 1e-5;
 
-std::vector<Ring> RingsOf(TubeFeature feature, RandomStream& stream, double r, double length_m,
-                          std::ostringstream& text) {
+std::vector<ProfileStep> ProfileOf(TubeFeature feature, RandomStream& stream, double r,
+                                   double length_m, std::ostringstream& text) {
   switch (feature) {
     case TubeFeature::kNone:
       return {};
@@ -94,7 +94,7 @@ std::vector<Ring> RingsOf(TubeFeature feature, RandomStream& stream, double r, d
       const double after_m = stream.Uniform() < 0.5 ? 0.0 : r * stream.Uniform(0.2, 1.5);
       text << " bead " << high << " over " << 1e3 * long_m << " mm, " << 1e3 * after_m
            << " mm before the end";
-      std::vector<Ring> rings;
+      std::vector<ProfileStep> rings;
       constexpr int kRings = 8;
       for (int i = 0; i <= kRings; ++i) {
         const double share = static_cast<double>(i) / kRings;
@@ -108,7 +108,7 @@ std::vector<Ring> RingsOf(TubeFeature feature, RandomStream& stream, double r, d
 }
 
 /// Puts the rings into the last straight piece, or, for a taper, over the whole line.
-std::vector<double> AddRings(const std::vector<Ring>& rings, double r, TubeFeature feature,
+std::vector<double> AddRings(const std::vector<ProfileStep>& rings, double r, TubeFeature feature,
                              Polyline& line) {
   if (feature == TubeFeature::kTaper) {
     std::vector<double> radii = ArcLengths(line);
@@ -122,7 +122,7 @@ std::vector<double> AddRings(const std::vector<Ring>& rings, double r, TubeFeatu
   const Vector3 t = (end - line[line.size() - 2]).normalized();
   line.pop_back();
   radii.pop_back();
-  for (const Ring& ring : rings) {
+  for (const ProfileStep& ring : rings) {
     line.push_back(end - ring.before_m * t);
     radii.push_back(r * ring.share);
   }
@@ -160,7 +160,7 @@ RandomTube MakeRandomTube(std::uint64_t seed, TubeFeature feature) {
        << 1e3 * Length(out.line) << " mm, " << options.sides << " sides, ends "
        << static_cast<int>(options.ends) << ", bore " << 1e3 * options.bore_m << " mm"
        << sweep.text;
-  const std::vector<Ring> rings = RingsOf(feature, stream, r, Length(out.line), text);
+  const std::vector<ProfileStep> rings = ProfileOf(feature, stream, r, Length(out.line), text);
   options.radii_m = AddRings(rings, r, feature, out.line);
   const Vector3 axis(stream.Normal(), stream.Normal(), stream.Normal());
   const Matrix3 R =

@@ -10,8 +10,6 @@ namespace {
 
 constexpr double kTracking_m = 0.0003;  ///< The issue's bound at 500 mm/s.
 
-Pile FarTube() { return OneTube("pvc_a", Vector3(0, 0.1, 0.0126)); }
-
 /// From a bin's end to the other: 0.6 m along B's y at 500 mm/s.
 void GoToLineStart(Bench& bench) { bench.MoveLine(bench.Down({0.60, -0.30, 0.50})); }
 

@@ -22,6 +22,8 @@ Pile OneTube(const std::string& part, const Vector3& p_NMiddle) {
   return pile;
 }
 
+Pile FarTube() { return OneTube("pvc_a", Vector3(0, 0.1, 0.0126)); }
+
 TwinCellOptions NominalOptions(const Pile& pile, bool exact_wrist) {
   TwinCellOptions options;
   options.model = PaperCell();

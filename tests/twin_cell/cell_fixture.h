@@ -22,6 +22,9 @@ namespace test {
 /// `p_NMiddle` (z: of the axis).
 Pile OneTube(const std::string& part, const Vector3& p_NMiddle);
 
+/// A tube of pvc_a on the floor, 0.1 m beside the bin's middle.
+Pile FarTube();
+
 /// Nominal physics; the wrist without noise, drift and cross-talk when `exact_wrist`.
 TwinCellOptions NominalOptions(const Pile& pile, bool exact_wrist = false);
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kCount_m = 0.085 / 227.0;  ///< One count of the position register.
 
-Pile FarTube() { return OneTube("pvc_a", Vector3(0, 0.2, 0.0126)); }
+Pile FartherTube() { return OneTube("pvc_a", Vector3(0, 0.2, 0.0126)); }
 
 /// Sum of the normal forces on one pad.
 double PadForce(Bench& bench, const char* pad) {
@@ -30,7 +30,7 @@ double PadForce(Bench& bench, const char* pad) {
 }  // namespace
 
 TEST_CASE("closing on nothing ends at the requested position with its opening") {
-  Bench bench(FarTube());
+  Bench bench(FartherTube());
   const GripperState closed = MoveGripper(bench.cell(), {0.0, 0.15, 60.0}).state;
   CHECK(closed.object == GripperObject::kAtPosition);
   CHECK(closed.opening_m <= kCount_m);
@@ -43,7 +43,7 @@ TEST_CASE("closing on nothing ends at the requested position with its opening") 
 }
 
 TEST_CASE("fingers move at the set speed within the device's range") {
-  Bench bench(FarTube());
+  Bench bench(FartherTube());
   double opening_m = 0.085;
   for (const double speed_m_s : {0.020, 0.150}) {
     const double target_m = opening_m > 0.04 ? 0.010 : 0.075;
@@ -116,7 +116,7 @@ TEST_CASE("a lost tube lets the fingers go on to the request") {
 }
 
 TEST_CASE("state says moving from the command on") {
-  Bench bench(FarTube());
+  Bench bench(FartherTube());
   CHECK(bench.cell().gripper.State().object == GripperObject::kAtPosition);
   bench.cell().gripper.Command({0.0, 0.1, 60.0});
   CHECK(bench.cell().gripper.State().object == GripperObject::kMoving);

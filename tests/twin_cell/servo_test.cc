@@ -10,8 +10,6 @@ namespace {
 /// Two cells step the same engine with references that differ by rounding only.
 constexpr double kSame_rad = 1e-7;
 
-Pile FarTube() { return OneTube("pvc_a", Vector3(0, 0.1, 0.0126)); }
-
 ServoReference At(const JointTrajectory& trajectory, double time_s) {
   const TrajectoryPoint a = Sample(trajectory, time_s);
   const TrajectoryPoint b = Sample(trajectory, time_s + Seconds(kControlPeriod));
