@@ -25,11 +25,6 @@ const char* const kTubes =
  "crossings": [], "unseen_m3": 0, "unexplained_points": 0, "threads": 1,
  "timing_ms": {"load": 0, "filter": 0, "segment": 0, "fit": 0, "join": 0, "crossings": 0, "total": 0}})";
 
-const char* const kPile =
-    R"({"schema": "tubetwin/pile/1", "bin": {"size_m": [0.77, 0.58, 0.09]}, "part": "pvc_a",
- "tubes": [{"id": 4, "centerline_m": [[-0.24, 0, 0.0125], [0.26, 0, 0.0125]], "radius_m": 0.0125, "mass_kg": 0.055}],
- "seed": 1, "settled": false})";
-
 std::string WithText(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
   REQUIRE(at != std::string::npos);

@@ -13,11 +13,6 @@ namespace {
 
 using Catch::Matchers::Contains;
 
-const char* const kPile =
-    R"({"schema": "tubetwin/pile/1", "bin": {"size_m": [0.77, 0.58, 0.09]}, "part": "pvc_a",
- "tubes": [{"id": 4, "centerline_m": [[-0.24, 0, 0.0125], [0.26, 0, 0.0125]], "radius_m": 0.0125, "mass_kg": 0.055}],
- "seed": 1, "settled": false})";
-
 TEST_CASE("What a full disk does not take of the output ends with 74, whatever the verb", "[app]") {
   const TemporaryFolder folder;
   Write(folder, "p.json", kPile);

@@ -4,6 +4,7 @@
 #include "models/base/error.h"
 #include "models/base/files.h"
 #include "tests/support/catch.h"
+#include "tests/support/refused.h"
 #include "tests/support/temporary_folder.h"
 #include "twin/render/cell_track.h"
 #include "twin/render/recording.h"
@@ -32,16 +33,6 @@ std::string Frames(int count) {
   return out;
 }
 
-Error ErrorOfReading(const std::string& path) {
-  try {
-    ReadRecording(path);
-  } catch (const Error& error) {
-    return error;
-  }
-  FAIL("no error for " << path);
-  throw 0;
-}
-
 /// A recording's file with another head, packed as the program packs them.
 void WritePacked(const std::string& head, const std::string& frames, const std::string& path) {
   const std::string content = head + std::string(1, '\0') + frames;
@@ -60,7 +51,7 @@ TEST_CASE("A recording that would unpack without end is refused by its head", "[
   const auto refused = [&](const std::string& nq, const std::string& frames,
                            const std::string& said) {
     WritePacked(HeadWith(nq, frames), Frames(4), (folder / "bomb.rec"));
-    const Error error = ErrorOfReading((folder / "bomb.rec"));
+    const Error error = Refused([&] { ReadRecording(folder / "bomb.rec"); });
     CHECK(error.kind() == ErrorKind::kBadData);
     CHECK_THAT(error.what(), Contains("bomb.rec: " + said));
   };
@@ -72,10 +63,11 @@ TEST_CASE("A recording that would unpack without end is refused by its head", "[
   refused("1", "5", "ends before its last frame");
   refused("1", "3", "goes on after its last frame");
   WritePacked(std::string(100, ' '), "", (folder / "blank.rec"));
-  CHECK_THAT(ErrorOfReading((folder / "blank.rec")).what(), Contains("blank.rec: head: not valid"));
+  CHECK_THAT(Refused([&] { ReadRecording(folder / "blank.rec"); }).what(),
+             Contains("blank.rec: head: not valid"));
   std::string endless(std::size_t{80} << 20, ' ');
   WritePacked(endless, "", (folder / "endless.rec"));
-  CHECK_THAT(ErrorOfReading((folder / "endless.rec")).what(),
+  CHECK_THAT(Refused([&] { ReadRecording(folder / "endless.rec"); }).what(),
              Contains("endless.rec: the head is longer than 67108864 bytes"));
 }
 

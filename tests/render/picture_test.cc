@@ -11,6 +11,7 @@
 #include "models/base/files.h"
 #include "scenes/engine/engine_error.h"
 #include "tests/support/catch.h"
+#include "tests/support/refused.h"
 #include "tests/support/tube_mesh.h"
 #include "twin/render/film_panels.h"
 #include "twin/render/picture.h"
@@ -60,16 +61,6 @@ Recording SmallRecording(int frames) {
   return recording;
 }
 
-Error ErrorOfReading(const std::string& path) {
-  try {
-    ReadRecording(path);
-  } catch (const Error& error) {
-    return error;
-  }
-  FAIL("no error for " << path);
-  throw 0;
-}
-
 TEST_CASE("A recording reads back as it was written", "[unit]") {
   const Folder folder;
   const Recording recording = SmallRecording(40);
@@ -102,19 +93,19 @@ TEST_CASE("A recording that is cut, altered or none at all is bad data", "[unit]
   const std::string whole = ReadFile(folder.File("a.rec"));
   for (const std::size_t size : {whole.size() - 1, whole.size() / 2, std::size_t{10}}) {
     WriteFileAtomically(folder.File("cut.rec"), whole.substr(0, size));
-    const Error error = ErrorOfReading(folder.File("cut.rec"));
+    const Error error = Refused([&] { ReadRecording(folder.File("cut.rec")); });
     CHECK(error.kind() == ErrorKind::kBadData);
     CHECK_THAT(error.what(), Contains("cut.rec: byte " + std::to_string(size)));
   }
   std::string altered = whole;
   altered[altered.size() / 2] ^= 0x10;
   WriteFileAtomically(folder.File("altered.rec"), altered);
-  CHECK(ErrorOfReading(folder.File("altered.rec")).kind() == ErrorKind::kBadData);
+  CHECK(Refused([&] { ReadRecording(folder.File("altered.rec")); }).kind() == ErrorKind::kBadData);
   for (const std::string& text : {std::string(), std::string("{}\n"), std::string(100, 'x')}) {
     WriteFileAtomically(folder.File("text.rec"), text);
-    CHECK(ErrorOfReading(folder.File("text.rec")).kind() == ErrorKind::kBadData);
+    CHECK(Refused([&] { ReadRecording(folder.File("text.rec")); }).kind() == ErrorKind::kBadData);
   }
-  CHECK(ErrorOfReading(folder.File("none.rec")).kind() == ErrorKind::kMissing);
+  CHECK(Refused([&] { ReadRecording(folder.File("none.rec")); }).kind() == ErrorKind::kMissing);
 }
 
 TEST_CASE("A frame that points at no overlay is bad data", "[unit]") {
@@ -122,7 +113,7 @@ TEST_CASE("A frame that points at no overlay is bad data", "[unit]") {
   Recording recording = SmallRecording(3);
   recording.frames[1].overlay = 7;
   WriteRecording(recording, folder.File("a.rec"));
-  const Error error = ErrorOfReading(folder.File("a.rec"));
+  const Error error = Refused([&] { ReadRecording(folder.File("a.rec")); });
   CHECK(error.kind() == ErrorKind::kBadData);
   CHECK_THAT(error.what(), Contains("frame 1: overlay is 7, allowed are -1 to 0"));
 }

@@ -6,6 +6,12 @@
 
 namespace tubetwin {
 
+/// One straight tube of pvc_a in a small bin, as a file.
+inline constexpr char kPile[] =
+    R"({"schema": "tubetwin/pile/1", "bin": {"size_m": [0.77, 0.58, 0.09]}, "part": "pvc_a",
+ "tubes": [{"id": 4, "centerline_m": [[-0.24, 0, 0.0125], [0.26, 0, 0.0125]], "radius_m": 0.0125, "mass_kg": 0.055}],
+ "seed": 1, "settled": false})";
+
 struct Outcome {
   int code = 0;
   std::string out, err;
