@@ -26,9 +26,13 @@ inline constexpr std::uint16_t kAlarm = 0x70, kAlarmHistory = 0x71, kStatus = 0x
                                kVariableP = 0x7F, kVariableBp = 0x80, kVariableEx = 0x81,
                                kReset = 0x82, kPower = 0x83, kCycle = 0x84, kPendantText = 0x85,
                                kStartJob = 0x86, kSelectJob = 0x87, kManagementTime = 0x88,
-                               kSystemInfo = 0x89, kMoveCartesian = 0x8A, kMovePulse = 0x8B;
-/// Several of kIoByte, kRegister, kVariableB to kVariableEx at once: kPluralIo + n.
-inline constexpr std::uint16_t kPluralIo = 0x300, kPluralEx = 0x309;
+                               kSystemInfo = 0x89, kMoveCartesian = 0x8A, kMovePulse = 0x8B,
+                               kVariableS32 = 0x8C;
+/// Several of kIoByte, kRegister, kVariableB to kVariableEx at once: kPluralIo + n; of
+/// kVariableS32.
+inline constexpr std::uint16_t kPluralIo = 0x300, kPluralEx = 0x309, kPluralS32 = 0x30C;
+/// kAlarm and kAlarmHistory with the texts of their sub-codes.
+inline constexpr std::uint16_t kAlarmTexts = 0x30A, kAlarmHistoryTexts = 0x30B;
 
 // Services.
 inline constexpr std::uint8_t kGetAll = 0x01, kSetAll = 0x02, kGetOne = 0x0E, kSetOne = 0x10,

@@ -185,46 +185,93 @@ TEST_CASE("A flood of idle connections does not lock the gripper up", "[unit]") 
   CHECK_THAT(client.Ask("0001 0000 0006 09 03 07D0 0001"), Contains("00 01"));
 }
 
-TEST_CASE("Modbus RTU on a pseudo-terminal gives the frames of the manual", "[unit]") {
-  const TemporaryFolder folder;
+GripperEmulatorConfig OnLine(const TemporaryFolder& folder) {
   GripperEmulatorConfig config;
   config.scale = PaperScale();
   config.transport = "rtu";
   config.device = folder / "ttyGRIPPER";
+  return config;
+}
+
+/// A client on the gripper's line that only knows bytes.
+class RtuClient {
+ public:
+  explicit RtuClient(Bench& served)
+      : bench_(served),
+        line_(::open(served.emulator.device().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK)) {
+    REQUIRE(line_ >= 0);
+  }
+  RtuClient(const RtuClient&) = delete;
+  RtuClient& operator=(const RtuClient&) = delete;
+  ~RtuClient() { ::close(line_); }
+
+  std::string Ask(const std::string& hex) {
+    const std::string request = FromHex(hex);
+    REQUIRE(::write(line_, request.data(), request.size()) == static_cast<ssize_t>(request.size()));
+    std::string all;
+    for (int i = 0; i < 100; ++i) {
+      bench_.Step();
+      char bytes[512];
+      const ssize_t size = ::read(line_, bytes, sizeof bytes);
+      if (size > 0) all.append(bytes, static_cast<std::size_t>(size));
+      std::this_thread::sleep_for(std::chrono::microseconds(50));
+    }
+    return ToSpacedHex(all);
+  }
+
+ private:
+  Bench& bench_;
+  int line_ = -1;
+};
+
+TEST_CASE("Modbus RTU on a pseudo-terminal gives the frames of the manual", "[unit]") {
+  const TemporaryFolder folder;
+  const GripperEmulatorConfig config = OnLine(folder);
   {
     GripperBench bench(config);
     CHECK(bench.emulator.device() == config.device);
-    const int line = ::open(config.device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
-    REQUIRE(line >= 0);
-    const auto ask = [&](const std::string& hex) {
-      const std::string request = FromHex(hex);
-      REQUIRE(::write(line, request.data(), request.size()) ==
-              static_cast<ssize_t>(request.size()));
-      std::string all;
-      for (int i = 0; i < 100; ++i) {
-        bench.Step();
-        char bytes[512];
-        const ssize_t size = ::read(line, bytes, sizeof bytes);
-        if (size > 0) all.append(bytes, static_cast<std::size_t>(size));
-        std::this_thread::sleep_for(std::chrono::microseconds(50));
-      }
-      return ToSpacedHex(all);
-    };
-    CHECK(ask("09 10 03 E8 00 03 06 00 00 00 00 00 00 73 30") == "09 10 03 E8 00 03 01 30");
-    CHECK(ask("09 10 03 E8 00 03 06 01 00 00 00 00 00 72 E1") == "09 10 03 E8 00 03 01 30");
-    CHECK(ask("09 03 07 D0 00 01 85 CF") == "09 03 02 11 00 55 D5");
-    CHECK(ask("09 04 07 D0 00 01 30 0F") == "09 04 02 11 00 54 A1");
+    RtuClient client(bench);
+    CHECK(client.Ask("09 10 03 E8 00 03 06 00 00 00 00 00 00 73 30") == "09 10 03 E8 00 03 01 30");
+    CHECK(client.Ask("09 10 03 E8 00 03 06 01 00 00 00 00 00 72 E1") == "09 10 03 E8 00 03 01 30");
+    CHECK(client.Ask("09 03 07 D0 00 01 85 CF") == "09 03 02 11 00 55 D5");
+    CHECK(client.Ask("09 04 07 D0 00 01 30 0F") == "09 04 02 11 00 54 A1");
     for (int i = 0; i < 2000; ++i) bench.Step();
-    CHECK(ask("09 03 07 D0 00 01 85 CF") == "09 03 02 31 00 4C 15");
+    CHECK(client.Ask("09 03 07 D0 00 01 85 CF") == "09 03 02 31 00 4C 15");
     // Illegal address, then noise, half a frame, another slave's: silence, and all goes on.
-    CHECK(ask("09 03 00 00 00 01 85 42") == "09 83 02 41 33");
-    CHECK(ask("55 AA 00 FF 13 37 09 09 09 09 09").empty());
-    CHECK(ask("09 03 07 D0").empty());
-    CHECK(ask("0A 03 07 D0 00 01 85 F9").empty());
-    CHECK(ask("09 04 07 D0 00 01 30 0F") == "09 04 02 31 00 4D 61");
-    ::close(line);
+    CHECK(client.Ask("09 03 00 00 00 01 85 42") == "09 83 02 41 33");
+    CHECK(client.Ask("55 AA 00 FF 13 37 09 09 09 09 09").empty());
+    CHECK(client.Ask("09 03 07 D0").empty());
+    CHECK(client.Ask("0A 03 07 D0 00 01 85 F9").empty());
+    CHECK(client.Ask("09 04 07 D0 00 01 30 0F") == "09 04 02 31 00 4D 61");
   }
   CHECK_FALSE(std::filesystem::is_symlink(config.device));
+}
+
+TEST_CASE("Public drivers' frames are answered: six registers, one register, write and read",
+          "[unit]") {
+  using Catch::Matchers::StartsWith;
+  const TemporaryFolder folder;
+  Bench bench(OnLine(folder));
+  RtuClient client(bench);
+  // The ROS 2 driver (PickNikRobotics/ros2_robotiq_gripper) activates without clearing before.
+  CHECK(client.Ask("09 10 03 E8 00 03 06 01 00 00 00 00 00 72 E1") == "09 10 03 E8 00 03 01 30");
+  const std::string activating = client.Ask("09 03 07 D0 00 06 C4 0D");
+  CHECK_THAT(activating, StartsWith("09 03 0C 11 00 00 00 "));
+  CHECK(FromHex(activating).size() == 17);
+  // It asks once a second, so the gripper complains of silence (9); the driver does not look there.
+  for (int i = 0; i < 2000; ++i) bench.Step();
+  CHECK(client.Ask("09 03 07 D0 00 06 C4 0D") ==
+        "09 03 0C 31 00 09 00 03 00 00 00 00 00 00 00 B6 CF");
+  CHECK(client.Ask("09 10 03 E8 00 03 06 09 00 00 80 80 80 12 21") == "09 10 03 E8 00 03 01 30");
+  for (int i = 0; i < 2000; ++i) bench.Step();
+  CHECK_THAT(client.Ask("09 03 07 D0 00 06 C4 0D"), StartsWith("09 03 0C F9 00 09 80 80 "));
+  // pyRobotiqGripper: the action register alone, and all with an answer in the same exchange.
+  CHECK(client.Ask("09 10 03 E8 00 01 02 01 00 E4 28") == "09 10 03 E8 00 01 80 F1");
+  CHECK(client.Ask("09 03 07 D0 00 01 85 CF") == "09 03 02 31 00 4C 15");
+  CHECK_THAT(client.Ask("09 17 07 D0 00 03 03 E8 00 01 02 09 00 F6 9A"),
+             StartsWith("09 17 06 ") && Catch::Matchers::Contains(" 00 00 80 "));
+  CHECK_THAT(client.Ask("09 17 07 D0 00 03 03 E8 00 03 06 09 00 00 80 FF FF D7 E6"),
+             StartsWith("09 17 06 "));
 }
 
 TEST_CASE("Link faults do to answers what they say", "[unit]") {

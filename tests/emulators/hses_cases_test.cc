@@ -106,6 +106,15 @@ const Reading kReadings[] = {
     {0x89, 11, 0, kAll, 48},
     {0x89, 11, 2, kOne, 16},
     {0x89, 12, 0, kAll, 0, 0xA001},
+    {0x8C, 0, 1, kOne, 32},
+    {0x8C, 99, 0, kAll, 32},
+    {0x8C, 100, 1, kOne, 0, 0xA001},
+    {0x30A, 1, 0, kAll, 268},
+    {0x30A, 4, 7, kOne, 96},
+    {0x30A, 5, 0, kAll, 0, 0xA001},
+    {0x30A, 1, 9, kOne, 0, 0xA002},
+    {0x30B, 4100, 0, kAll, 268},
+    {0x30B, 101, 0, kAll, 0, 0xA001},
 };
 
 struct Writing {
@@ -128,9 +137,14 @@ const Writing kWritings[] = {
     {0x7A, 5, 0, kPutAll, Bytes(1), 0},
     {0x7A, 5, 1, kPutOne, Bytes(4), 0xB003},
     {0x7B, 5, 1, kPutOne, Bytes(2), 0},
+    {0x7B, 6, 1, kPutOne, Bytes(4), 0xB003},
+    {0x7B, 6, 1, kPutOne, Bytes(1), 0xB003},
     {0x7C, 5, 1, kPutOne, Bytes(4), 0},
     {0x7D, 5, 1, kPutAll, Bytes(4), 0},
     {0x7E, 5, 1, kPutOne, Bytes(16), 0},
+    {0x7E, 5, 1, kPutOne, Bytes(32), 0xB003},
+    {0x8C, 6, 1, kPutOne, Bytes(32), 0},
+    {0x8C, 6, 1, kPutOne, Bytes(16), 0xB003},
     {0x7F, 5, 0, kPutAll, Bytes(52), 0},
     {0x7F, 5, 6, kPutOne, Bytes(4), 0},
     {0x7F, 5, 0, kPutOne, Bytes(52), 0xA002},
@@ -185,7 +199,8 @@ const PluralCase kPlurals[] = {
     {0x306, 0, kMany, 29, 16, 0},       {0x306, 0, kMany, 30, 16, 0xB004},
     {0x307, 0, kMany, 9, 52, 0},        {0x307, 0, kMany, 10, 52, 0xB004},
     {0x307, 0, kPutMany, 2, 52, 0},     {0x308, 0, kMany, 13, 36, 0},
-    {0x309, 0, kMany, 13, 36, 0},
+    {0x309, 0, kMany, 13, 36, 0},       {0x30C, 0, kMany, 14, 32, 0},
+    {0x30C, 0, kMany, 15, 32, 0xB004},  {0x30C, 8, kPutMany, 2, 32, 0},
 };
 
 }  // namespace
@@ -254,9 +269,42 @@ TEST_CASE("supervision reads and writes several at once", "[unit]") {
   CHECK(supervisor.Ask(0x304, 0, 0, kAll, hses::Word(1)).added_status == hses::kNoAttribute);
 }
 
+TEST_CASE("a text variable is the same by 16 and by 32 characters", "[unit]") {
+  Supervisor supervisor;
+  const std::string longer = "more than sixteen characters";
+  std::string slot = longer;
+  slot.resize(32);
+  REQUIRE(supervisor.Ask(0x8C, 7, 1, kPutOne, slot).status == hses::kOk);
+  CHECK(supervisor.Ask(0x7E, 7, 1, kOne).data == "more than sixtee");
+  REQUIRE(
+      supervisor.Ask(0x7E, 7, 1, kPutOne, std::string("short") + std::string(11, '\0')).status ==
+      hses::kOk);
+  CHECK(supervisor.Ask(0x8C, 7, 1, kOne).data == std::string("short") + std::string(27, '\0'));
+}
+
+TEST_CASE("short values may be written in a slot of four bytes", "[unit]") {
+  Supervisor supervisor;
+  const auto put = [&supervisor](std::uint16_t command, std::uint32_t value) {
+    return supervisor.Ask(command, 5, 1, kPutOne, hses::Word(value)).added_status;
+  };
+  const auto get = [&supervisor](std::uint16_t command) {
+    return supervisor.Ask(command, 5, 1, kOne).data;
+  };
+  CHECK(put(0x7A, 7) == 0);
+  CHECK(get(0x7A) == "\x07");
+  CHECK(put(0x7B, 0xfffffffb) == 0);  // -5
+  CHECK(get(0x7B) == "\xfb\xff");
+  CHECK(put(0x79, 40000) == 0);
+  CHECK(get(0x79) == "\x40\x9c");
+  CHECK(put(0x7A, 256) == hses::kDataSize);  // More than it holds.
+  CHECK(put(0x7A, 0xfffffffb) == hses::kDataSize);
+  CHECK(put(0x7B, 0xffff0005) == hses::kDataSize);
+  CHECK(put(0x7B, 0x00010005) == hses::kDataSize);
+}
+
 TEST_CASE("unknown commands and files are refused, not left without an answer", "[unit]") {
   Supervisor supervisor;
-  for (const int command : {0x00, 0x6F, 0x8A, 0x8B, 0x8C, 0x2FF, 0x30A, 0xFFFF}) {
+  for (const int command : {0x00, 0x6F, 0x8A, 0x8B, 0x8D, 0x2FF, 0x30D, 0xFFFF}) {
     CAPTURE(command);
     const auto answer = supervisor.Ask(static_cast<std::uint16_t>(command), 1, 0, kAll);
     CHECK(answer.status == hses::kCommandUndefined);

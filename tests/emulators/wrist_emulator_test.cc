@@ -269,6 +269,40 @@ TEST_CASE("Garbage on the wire is ignored", "[unit]") {
   CHECK(newest == 501);
 }
 
+TEST_CASE("Public clients' datagrams start, restart, bias and stop the stream", "[unit]") {
+  Bench bench;
+  const auto ask = [&bench](const std::string& hex) {
+    bench.socket.send(asio::buffer(FromHex(hex)));
+  };
+  // netft_utils: a stream without end, its sequence from 1 on; it starts again when nothing comes.
+  ask("1234 0002 00000000");
+  bench.Step(20);
+  std::vector<RdtRecord> records = bench.Records();
+  REQUIRE(records.size() >= 19);
+  CHECK(records.front().rdt_sequence == 1);
+  CHECK(records.back().rdt_sequence == records.size());
+  CHECK(std::abs(records.back().counts[2] - 10'000'000) < 20'000);  // Its counts per newton: 1e6.
+  // netft-cpp and pynetft: bias, and the stream anew.
+  ask("1234 0042 00000000");
+  ask("1234 0002 00000000");
+  bench.Step(20);
+  records = bench.Records();
+  REQUIRE(records.size() >= 19);
+  CHECK(std::abs(records.back().counts[2]) < 20'000);
+  ask("1234 0000 00000000");
+  bench.Step(5);
+  bench.Datagrams();
+  bench.Step(20);
+  CHECK(bench.Datagrams().empty());
+  // What netft-cpp wants to find in the page, asked for as libcurl asks.
+  const std::string page =
+      bench.Http("GET /netftapi2.xml HTTP/1.1\r\nHost: 127.0.0.1:8049\r\nAccept: */*\r\n\r\n");
+  for (const char* tag :
+       {"<prodname>", "<cfgcpf>1000000<", "<cfgcpt>1000000<", "<scfgfu>N<", "<scfgtu>"}) {
+    CHECK_THAT(page, Contains(tag));
+  }
+}
+
 TEST_CASE("The configuration page is served over HTTP, and nothing else", "[unit]") {
   WristEmulatorConfig config = WristOnAnyPort(500);
   config.counts_per_N = 250000;

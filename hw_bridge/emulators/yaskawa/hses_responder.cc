@@ -33,6 +33,9 @@ std::vector<std::size_t> SizesOf(std::uint16_t command) {
     case hses::kAlarm:
     case hses::kAlarmHistory:
       return {4, 4, 4, 16, 32};
+    case hses::kAlarmTexts:
+    case hses::kAlarmHistoryTexts:
+      return {4, 4, 4, 16, 32, 16, 96, 96};
     case hses::kStatus:
       return {4, 4};
     case hses::kExecutingJob:
@@ -123,9 +126,13 @@ Answer HsesResponder::AnswerTo(const Request& request) {
     Read(request, answer);
   } else if (command == hses::kManagementTime || command == hses::kSystemInfo) {
     Read(request, answer);
-  } else if (command >= hses::kIoByte && command <= hses::kVariableEx) {
+  } else if (command == hses::kAlarmTexts || command == hses::kAlarmHistoryTexts) {
+    Read(request, answer);
+  } else if ((command >= hses::kIoByte && command <= hses::kVariableEx) ||
+             command == hses::kVariableS32) {
     Variable(request, answer);
-  } else if (command >= hses::kPluralIo && command <= hses::kPluralEx) {
+  } else if ((command >= hses::kPluralIo && command <= hses::kPluralEx) ||
+             command == hses::kPluralS32) {
     Plural(request, answer);
   } else if (command == hses::kSelectJob) {
     SelectJob(request, answer);
@@ -188,6 +195,13 @@ std::optional<std::string> HsesResponder::Whole(std::uint16_t command,
         return std::nullopt;
       }
       return AlarmData(0);
+    case hses::kAlarmTexts:
+    case hses::kAlarmHistoryTexts: {  // No alarm of this controller has a sub-code.
+      const bool history = command == hses::kAlarmHistoryTexts;
+      const auto alarm = Whole(history ? hses::kAlarmHistory : hses::kAlarm, instance);
+      if (!alarm) return std::nullopt;
+      return Padded(*alarm, alarm->size() + 16 + 96 + 96);
+    }
     case hses::kManagementTime:
       return Padded("", 16 + 12);
     case hses::kSystemInfo:

@@ -16,6 +16,16 @@ constexpr std::uint32_t kRegisterCount = 1000, kWritableRegisters = 560;
 constexpr std::uint32_t kFirstNetworkInput = 2701, kLastNetworkInput = 2956;
 constexpr std::uint32_t kCountSize = 4;
 
+/// Some clients write what is shorter in a slot of 4 bytes, filled up by its sign.
+std::string WithoutFill(const std::string& data, std::size_t size) {
+  constexpr std::size_t kSlot = 4;
+  if (data.size() != kSlot || (size != 1 && size != 2)) return data;
+  const bool empty = data.find_first_not_of('\0', size) == std::string::npos;
+  const bool negative = size == 2 && (Le16At(data, 0) & 0x8000) != 0;
+  const bool sign = negative && data.find_first_not_of('\xff', size) == std::string::npos;
+  return empty || sign ? data.substr(0, size) : data;
+}
+
 /// Sizes of the attributes of an element, by kind from kIoByte on.
 std::vector<std::size_t> AttributeSizes(std::uint16_t command) {
   switch (command) {
@@ -27,6 +37,8 @@ std::vector<std::size_t> AttributeSizes(std::uint16_t command) {
       return {2};
     case hses::kVariableS:
       return {16};
+    case hses::kVariableS32:
+      return {32};
     case hses::kVariableP:
       return std::vector<std::size_t>(13, 4);
     case hses::kVariableBp:
@@ -60,6 +72,9 @@ std::optional<std::string> HsesResponder::Element(std::uint16_t command,
     return bytes;
   }
   if (number >= kVariables) return std::nullopt;
+  if (command == hses::kVariableS) {  // The beginning of the same text.
+    return Element(hses::kVariableS32, number)->substr(0, SizeOf(command));
+  }
   const auto found = variables_.find({command, number});
   return found != variables_.end() ? found->second : std::string(SizeOf(command), '\0');
 }
@@ -76,6 +91,12 @@ std::uint16_t HsesResponder::Write(std::uint16_t command, std::uint32_t number,
     controller_.io().SetRegister(static_cast<int>(number), Le16At(bytes, 0));
   } else {
     if (number >= kVariables) return hses::kNoInstance;
+    if (command == hses::kVariableS) {
+      std::string text = bytes;
+      text.resize(SizeOf(hses::kVariableS32));
+      variables_[{hses::kVariableS32, number}] = text;
+      return 0;
+    }
     variables_[{command, number}] = bytes;
   }
   return 0;
@@ -92,16 +113,19 @@ void HsesResponder::Variable(const Request& request, Answer& answer) {
     answer.data = whole->substr(read->at, read->size);
     return;
   }
-  if (request.data.size() != write->size) return RefuseHses(answer, hses::kDataSize);
+  const std::string data = WithoutFill(request.data, write->size);
+  if (data.size() != write->size) return RefuseHses(answer, hses::kDataSize);
   if (!controller_.remote()) return RefuseHses(answer, hses::kNotRemote);
-  whole->replace(write->at, write->size, request.data);
+  whole->replace(write->at, write->size, data);
   const std::uint16_t why = Write(request.command, request.instance, *whole);
   if (why != 0) RefuseHses(answer, why);
 }
 
 void HsesResponder::Plural(const Request& request, Answer& answer) {
   const auto command =
-      static_cast<std::uint16_t>(hses::kIoByte + (request.command - hses::kPluralIo));
+      request.command == hses::kPluralS32
+          ? hses::kVariableS32
+          : static_cast<std::uint16_t>(hses::kIoByte + (request.command - hses::kPluralIo));
   const bool write = request.service == hses::kWritePlural;
   if ((!write && request.service != hses::kReadPlural) || request.attribute != 0) {
     return RefuseHses(answer, hses::kNoAttribute);
