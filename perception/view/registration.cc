@@ -8,6 +8,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "perception/view/bin_planes.h"
+
 namespace tubetwin {
 namespace {
 
@@ -37,54 +39,8 @@ constexpr std::size_t kEnough = 800;
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-/// A plane of the bin: n_N.p = offset on it, n_N into the bin.
-struct Plane {
-  Vector3 n_N;
-  double offset_m;
-};
-constexpr std::size_t kPlanes = 5;
-
-std::array<Plane, kPlanes> PlanesOf(const Bin& bin) {
-  return {Plane{Vector3::UnitZ(), 0.0}, Plane{-Vector3::UnitX(), -bin.half_x_m()},
-          Plane{Vector3::UnitX(), -bin.half_x_m()}, Plane{-Vector3::UnitY(), -bin.half_y_m()},
-          Plane{Vector3::UnitY(), -bin.half_y_m()}};
-}
-
-/// Whether a point near plane `k` lies well within its part that bounds the bin.
-bool Within(const Bin& bin, std::size_t k, const Vector3& p_N) {
-  const bool in_x = std::abs(p_N.x()) < bin.half_x_m() - kInset_m;
-  const bool in_y = std::abs(p_N.y()) < bin.half_y_m() - kInset_m;
-  const bool in_z = p_N.z() > kInset_m && p_N.z() < bin.wall_m() - kInset_m;
-  return k == 0 ? in_x && in_y : (k <= 2 ? in_y : in_x) && in_z;
-}
-
 /// Points of a view per plane, frame S.
-using Samples = std::array<std::vector<Vector3>, kPlanes>;
-
-/// Point of the first pixel with a return that is `near` to twice as many steps away; NaN without.
-Eigen::Vector3f Neighbour(const ViewRaster& view, int column, int row, int step_x, int step_y,
-                          int near) {
-  for (int i = near; i <= 2 * near; ++i) {
-    const int c = column + i * step_x, r = row + i * step_y;
-    if (c < 0 || r < 0 || c >= view.width || r >= view.height) break;
-    const Eigen::Vector3f& p = view.At(c, r);
-    if (p.z() >= kNearest_m) return p;
-  }
-  return InvalidPoint();
-}
-
-/// Normal at a pixel towards the sensor from four neighbours at least `near` away; nothing at
-/// holes. Walls drop many returns: neighbours next to each other are rare there.
-std::optional<Vector3> NormalAt(const ViewRaster& view, int column, int row, int near) {
-  const Eigen::Vector3f along =
-      Neighbour(view, column, row, 1, 0, near) - Neighbour(view, column, row, -1, 0, near);
-  const Eigen::Vector3f down =
-      Neighbour(view, column, row, 0, 1, near) - Neighbour(view, column, row, 0, -1, near);
-  const Vector3 n = down.cross(along).cast<double>();
-  const double length = n.norm();
-  if (!(length > 0.0)) return std::nullopt;
-  return Vector3(n / length);
-}
+using Samples = std::array<std::vector<Vector3>, kBinPlanes>;
 
 /// Finds points of the planes in one view.
 class Sampler {
@@ -95,15 +51,15 @@ class Sampler {
   Samples Sample() const {
     const double pixels = static_cast<double>(view_.width) * view_.height;
     const int step = std::max(1, static_cast<int>(std::sqrt(pixels / kSamples)));
-    std::array<std::vector<std::pair<int, int>>, kPlanes> places;
+    std::array<std::vector<std::pair<int, int>>, kBinPlanes> places;
     for (int row = step / 2; row < view_.height; row += step) {
       for (int column = step / 2; column < view_.width; column += step) {
         const std::size_t k = PlaneAt(column, row);
-        if (k < kPlanes) places[k].emplace_back(column, row);
+        if (k < kBinPlanes) places[k].emplace_back(column, row);
       }
     }
     Samples out;
-    for (std::size_t k = 0; k < kPlanes; ++k) {
+    for (std::size_t k = 0; k < kBinPlanes; ++k) {
       const std::size_t n = places[k].size();
       // Of a wall, which is foreshortened and drops many returns, a finer lattice around each.
       const int finer = n < kEnough / 8 ? 5 : n < kEnough / 2 ? 3 : 1;
@@ -119,14 +75,14 @@ class Sampler {
   }
 
  private:
-  /// Number of the plane that a pixel's place belongs to, kPlanes for none.
+  /// Number of the plane that a pixel's place belongs to, kBinPlanes for none.
   std::size_t PlaneAt(int column, int row) const {
     const Eigen::Vector3f& p = view_.At(column, row);
-    if (!(p.z() >= kNearest_m)) return kPlanes;
+    if (!(p.z() >= kNearest_m)) return kBinPlanes;
     const Vector3 p_N = view_.X_NS * p.cast<double>();
     std::size_t k = 0;
-    while (k < kPlanes && (std::abs(planes_[k].n_N.dot(p_N) - planes_[k].offset_m) > kGate_m ||
-                           !Within(bin_, k, p_N))) {
+    while (k < kBinPlanes && (std::abs(planes_[k].n_N.dot(p_N) - planes_[k].offset_m) > kGate_m ||
+                              !WithinPlane(bin_, k, p_N, kInset_m))) {
       ++k;
     }
     return k;
@@ -143,7 +99,7 @@ class Sampler {
 
   const ViewRaster& view_;
   const Bin& bin_;
-  const std::array<Plane, kPlanes> planes_;
+  const BinPlanes planes_;
   const int apart_;
 };
 
@@ -162,10 +118,10 @@ struct Equations {
 };
 
 Equations Linearize(const Samples& samples, const RigidTransform& X_NS, const Vector6& x,
-                    const std::array<Plane, kPlanes>& planes, double scale_m) {
+                    const BinPlanes& planes, double scale_m) {
   Equations out;
   const RigidTransform X_NS_now = X_NS * Motion(x);
-  for (std::size_t k = 0; k < kPlanes; ++k) {
+  for (std::size_t k = 0; k < kBinPlanes; ++k) {
     const auto& points = samples[k];
     if (points.empty()) continue;
     const double share = std::min(1.0, kMaxPerPlane / static_cast<double>(points.size()));
@@ -184,9 +140,9 @@ Equations Linearize(const Samples& samples, const RigidTransform& X_NS, const Ve
 }
 
 double SquaredResiduals(const Samples& samples, const RigidTransform& X_NS,
-                        const std::array<Plane, kPlanes>& planes) {
+                        const BinPlanes& planes) {
   double sum = 0.0;
-  for (std::size_t k = 0; k < kPlanes; ++k) {
+  for (std::size_t k = 0; k < kBinPlanes; ++k) {
     for (const Vector3& p_S : samples[k]) {
       const double residual = planes[k].n_N.dot(X_NS * p_S) - planes[k].offset_m;
       sum += residual * residual;
@@ -204,8 +160,7 @@ Vector6 InverseVariances(double shift_m, double turn_rad) {
 
 /// Six numbers per view: what all share plus its own.
 std::vector<Vector6> Solve(const std::vector<Samples>& samples,
-                           const std::vector<ViewRaster>& views,
-                           const std::array<Plane, kPlanes>& planes) {
+                           const std::vector<ViewRaster>& views, const BinPlanes& planes) {
   const auto n = static_cast<Eigen::Index>(views.size());
   Eigen::VectorXd x = Eigen::VectorXd::Zero(6 * (n + 1));  // The common six come last.
   Eigen::VectorXd prior(x.size());

@@ -161,6 +161,18 @@ ViewRaster KeepRaster(const OrganizedCloud& cloud, const Pinhole& camera, double
   return raster;
 }
 
+/// Point of the first pixel with a return that is `near` to twice as many steps away; NaN without.
+Eigen::Vector3f Neighbour(const ViewRaster& view, int column, int row, int step_x, int step_y,
+                          int near) {
+  for (int i = near; i <= 2 * near; ++i) {
+    const int c = column + i * step_x, r = row + i * step_y;
+    if (c < 0 || r < 0 || c >= view.width || r >= view.height) break;
+    const Eigen::Vector3f& p = view.At(c, r);
+    if (p.z() >= kNearest_m) return p;
+  }
+  return InvalidPoint();
+}
+
 }  // namespace
 
 ViewRaster MakeViewRaster(const OrganizedCloud& cloud, double pitch_m) {
@@ -214,6 +226,17 @@ ViewImage MakeEmptyImage(const ViewRaster& raster) {
   image.z_near.resize(n);
   image.z_far.resize(n);
   return image;
+}
+
+std::optional<Vector3> NormalAt(const ViewRaster& view, int column, int row, int near) {
+  const Eigen::Vector3f along =
+      Neighbour(view, column, row, 1, 0, near) - Neighbour(view, column, row, -1, 0, near);
+  const Eigen::Vector3f down =
+      Neighbour(view, column, row, 0, 1, near) - Neighbour(view, column, row, 0, -1, near);
+  const Vector3 n = down.cross(along).cast<double>();
+  const double length = n.norm();
+  if (!(length > 0.0)) return std::nullopt;
+  return Vector3(n / length);
 }
 
 }  // namespace tubetwin

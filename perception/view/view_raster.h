@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "models/base/cloud/cloud.h"
@@ -42,6 +43,11 @@ inline constexpr float kEdgeDepth_m = 0.003f;
 /// that, at a place 1.5 m above the bin. Blocks are about `pitch_m` wide. Throws Error(kBadData)
 /// when the pose is not finite or the sizes disagree.
 ViewRaster MakeViewRaster(const OrganizedCloud& cloud, double pitch_m);
+
+/// Unit normal of the surface at a pixel, towards the sensor, frame S, from four neighbours `near`
+/// to twice as many pixels away; nothing at holes and edges of the image. Neighbours next to each
+/// other are rare on walls, which drop many returns.
+std::optional<Vector3> NormalAt(const ViewRaster& view, int column, int row, int near);
 
 /// The view's depth image, without depths: its cells are kBlocksPerCell blocks wide.
 ViewImage MakeEmptyImage(const ViewRaster& raster);

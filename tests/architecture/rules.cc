@@ -26,6 +26,7 @@ const std::map<std::string, std::vector<std::string>>& Rooms() {
       {"scenes", {"scenes/engine", "models"}},
       {"perception/view", {"models"}},
       {"perception/scene", {"perception/view"}},
+      {"perception/calibration", {"perception/view"}},
       {"perception/fragment", {"perception/view"}},
       {"perception/joining", {"perception/fragment", "perception/scene"}},
       {"perception/part_import", {"perception/fragment"}},
@@ -50,7 +51,9 @@ const std::map<std::string, std::vector<std::string>>& Rooms() {
       {"twin/study", {"twin/campaign", "twin/round", "twin/statistics"}},
       {"twin/report", {"twin/study", "twin/campaign", "twin/round", "twin/statistics"}},
       {"twin/live", {"twin/round", "hw_bridge/drivers", "hw_bridge/emulators"}},
-      {"twin/app", {"twin/live", "twin/report", "perception/part_import", "hw_bridge/mcap"}},
+      {"twin/app",
+       {"twin/live", "twin/report", "perception/calibration", "perception/part_import",
+        "hw_bridge/mcap"}},
   };
   return rooms;
 }
