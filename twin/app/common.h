@@ -100,6 +100,8 @@ void AddRenderVerb(CLI::App& app, Common& common);
 void AddPartVerb(CLI::App& app, Common& common);
 void AddDoctorVerb(CLI::App& app, Common& common);
 void AddJogVerb(CLI::App& app, Common& common);
+void AddHomeVerb(CLI::App& app, Common& common);
+void AddCalibrateVerb(CLI::App& app, Common& common);
 void AddConfigVerb(CLI::App& app, Common& common);
 
 }  // namespace tubetwin

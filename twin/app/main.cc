@@ -47,6 +47,8 @@ int Run(int argc, char** argv) {
   AddPartVerb(app, common);
   AddDoctorVerb(app, common);
   AddJogVerb(app, common);
+  AddHomeVerb(app, common);
+  AddCalibrateVerb(app, common);
   AddConfigVerb(app, common);
   std::vector<std::string> words = HelpWords({argv + 1, argv + argc});
   const auto refuse = [](const std::string& why) {

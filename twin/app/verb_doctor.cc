@@ -16,7 +16,9 @@
 #include "models/base/json.h"
 #include "models/base/text.h"
 #include "scenes/engine/engine_error.h"
+#include "twin/app/ask.h"
 #include "twin/app/common.h"
+#include "twin/live/activate_gripper.h"
 #include "twin/live/jog.h"
 #include "twin/live/live_cell.h"
 #include "twin/render/gl/egl_context.h"
@@ -163,7 +165,41 @@ std::vector<Examined> ExamineCell(const Scenario& scenario) {
   return out;
 }
 
-int Doctor(const std::string& cell_file, const Common& common) {
+struct DoctorOptions {
+  std::string cell;
+  bool activate_gripper = false, yes = false;
+};
+
+/// Activates the gripper, after asking, and says what it was like before.
+void Activate(const Scenario& scenario, const DoctorOptions& doctor, const Common& common) {
+  const auto ask = [&](const std::string& address) {
+    RequireWord(
+        {"doctor --activate-gripper", "the fingers may move",
+         "The fingers of the gripper at " + address + " will open and close once.", "activate"},
+        doctor.yes);
+  };
+  const auto confirm = [&](const std::string& what) {
+    if (::isatty(STDIN_FILENO) != 1) return false;
+    std::fprintf(stderr, "%s. When nothing is between the fingers, type 'empty': ",
+                 ForTerminal(what).c_str());
+    std::string answer;
+    std::getline(std::cin, answer);
+    return answer == "empty";
+  };
+  const ActivatedGripper done = ActivateGripper(scenario, ask, confirm);
+  Say(common, "gripper: was " + Said(done.before) +
+                  (done.before.activated ? "; nothing was moved" : "; is " + Said(done.after)));
+}
+
+int Doctor(const DoctorOptions& doctor, const Common& common) {
+  const std::string& cell_file = doctor.cell;
+  if (doctor.activate_gripper && cell_file.empty()) {
+    throw Error(ErrorKind::kUsage,
+                "--activate-gripper needs --cell CELL.toml, which says where the gripper is");
+  }
+  if (doctor.yes && !doctor.activate_gripper) {
+    throw Error(ErrorKind::kUsage, "--yes answers --activate-gripper; doctor asks nothing else");
+  }
   std::vector<Examined> findings;
   bool impossible = false;
   if (cell_file.empty()) {
@@ -175,6 +211,7 @@ int Doctor(const std::string& cell_file, const Common& common) {
     for (const Finding& finding : judged) findings.push_back(AsExamined(finding));
     impossible = WorstOf(judged) == Finding::Verdict::kImpossible;
     if (!impossible) {
+      if (doctor.activate_gripper) Activate(scenario, doctor, common);
       for (Examined& device : ExamineCell(scenario)) {
         findings.push_back(std::move(device));
       }
@@ -201,23 +238,6 @@ struct JogVerb {
   bool yes = false;
 };
 
-/// A person at a terminal says "move", or whoever wrote --yes has said so.
-void RequireWord(const JogVerb& verb, const std::string& address) {
-  if (verb.yes) return;
-  if (::isatty(STDIN_FILENO) != 1) {
-    throw Error(ErrorKind::kUsage,
-                "jog: nobody is at a terminal to say that the arm may move; allowed is a person "
-                "there, or --yes from one who sees the arm; nothing was sent");
-  }
-  std::fprintf(stderr,
-               "Joint %d of the arm at %s will turn by %s degrees; nothing looks for collisions. "
-               "When nobody is near, type 'move': ",
-               verb.jog.joint, ForTerminal(address).c_str(), Number(verb.jog.degrees).c_str());
-  std::string answer;
-  std::getline(std::cin, answer);
-  if (answer != "move") throw Error(ErrorKind::kInterrupted, "jog: not moved");
-}
-
 int RunJog(const JogVerb& verb, const Common& common) {
   const Scenario scenario = LoadScenario({verb.cell}, common);
   scenario.cell.ValidateOrThrow();
@@ -229,7 +249,12 @@ int RunJog(const JogVerb& verb, const Common& common) {
   }
   RequireArmed(scenario);
   const DeviceLock lock(DeviceToOwn("arm", role));
-  RequireWord(verb, role.Chosen().Address());
+  RequireWord(
+      {"jog", "the arm may move",
+       "Joint " + std::to_string(verb.jog.joint) + " of the arm at " + role.Chosen().Address() +
+           " will turn by " + Number(verb.jog.degrees) + " degrees; nothing looks for collisions.",
+       "move"},
+      verb.yes);
   WallClock clock(scenario.rate);
   const CellModel model = ScenarioModel(scenario);
   JogOptions options = verb.jog;
@@ -254,14 +279,17 @@ void AddDoctorVerb(CLI::App& app, Common& common) {
   CLI::App* verb = app.add_subcommand(
       "doctor",
       "Example: tubetwin doctor --cell cell.toml\n\nWhat is missing on this machine, with the fix; "
-      "or, with a cell file, what each of its devices says. Moves nothing.");
-  auto cell_file = std::make_shared<std::string>();
-  verb->add_option("--cell", *cell_file, "Cell file (TOML): read its devices");
+      "or, with a cell file, what each of its devices says. Moves nothing but, when asked for, the "
+      "fingers.");
+  auto doctor = std::make_shared<DoctorOptions>();
+  verb->add_option("--cell", doctor->cell, "Cell file (TOML): read its devices");
+  verb->add_flag("--activate-gripper", doctor->activate_gripper,
+                 "Activate the gripper first: its fingers open and close once; asks before");
+  verb->add_flag("--yes", doctor->yes, "Do not ask: whoever wrote it sees the gripper");
   AddCommonOptions(*verb, common, {"cell", "calibration", "bin", "scan", "pile", "part", "rate"},
                    "", false);
-  verb->callback([cell_file, &common] {
-    common.action = [cell_file, &common] { return Doctor(*cell_file, common); };
-  });
+  verb->callback(
+      [doctor, &common] { common.action = [doctor, &common] { return Doctor(*doctor, common); }; });
 }
 
 void AddJogVerb(CLI::App& app, Common& common) {
