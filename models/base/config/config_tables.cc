@@ -150,7 +150,8 @@ ConfigSource ConfigSource::TakeTable(const std::string& key) {
     const std::vector<std::string> keys = SplitAtDots(name);
     if (keys.empty() || keys.size() > kDeepestNesting ||
         !std::all_of(keys.begin(), keys.end(), IsBareKey)) {
-      Fail(below, key, "'" + Printable(name) + "' is no key; keys are written like planner.exclude_free");
+      Fail(below, key,
+           "'" + Printable(name) + "' is no key; keys are written like planner.exclude_free");
     }
     Merge(out.impl_->layers, Wrapped(keys, std::move(below)));
   }
