@@ -196,7 +196,7 @@ GripperEmulatorConfig OnLine(const TemporaryFolder& folder) {
 /// A client on the gripper's line that only knows bytes.
 class RtuClient {
  public:
-  explicit RtuClient(Bench& served)
+  explicit RtuClient(GripperBench& served)
       : bench_(served),
         line_(::open(served.emulator.device().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK)) {
     REQUIRE(line_ >= 0);
@@ -220,7 +220,7 @@ class RtuClient {
   }
 
  private:
-  Bench& bench_;
+  GripperBench& bench_;
   int line_ = -1;
 };
 
@@ -251,7 +251,7 @@ TEST_CASE("Public drivers' frames are answered: six registers, one register, wri
           "[unit]") {
   using Catch::Matchers::StartsWith;
   const TemporaryFolder folder;
-  Bench bench(OnLine(folder));
+  GripperBench bench(OnLine(folder));
   RtuClient client(bench);
   // The ROS 2 driver (PickNikRobotics/ros2_robotiq_gripper) activates without clearing before.
   CHECK(client.Ask("09 10 03 E8 00 03 06 01 00 00 00 00 00 72 E1") == "09 10 03 E8 00 03 01 30");

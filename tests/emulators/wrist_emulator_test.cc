@@ -270,7 +270,7 @@ TEST_CASE("Garbage on the wire is ignored", "[unit]") {
 }
 
 TEST_CASE("Public clients' datagrams start, restart, bias and stop the stream", "[unit]") {
-  Bench bench;
+  WristBench bench;
   const auto ask = [&bench](const std::string& hex) {
     bench.socket.send(asio::buffer(FromHex(hex)));
   };
