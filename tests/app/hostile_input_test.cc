@@ -52,10 +52,10 @@ TEST_CASE("A configuration nested thousands deep ends with 78 in every verb", "[
   }
   Write(folder, "keys.toml", keys + "b = 1\n");
   Write(folder, "lists.toml", "seed = " + lists + "\n");
-  for (const std::string file : {"keys.toml", "lists.toml"}) {
+  for (const std::string& file : {std::string("keys.toml"), std::string("lists.toml")}) {
     const std::string said =
         file + ":1: lists, tables or the parts of a key nest more than 32 deep";
-    for (const std::string verb :
+    for (const std::string& verb :
          {"config check " + file, "part check " + file, "run " + file + " --out o",
           "campaign run " + file + " --out o", "emulate --faults " + file + " --out o",
           "doctor --cell " + file, "config check --set cell.model=" + file}) {
@@ -69,7 +69,7 @@ TEST_CASE("A configuration nested thousands deep ends with 78 in every verb", "[
 TEST_CASE("JSON nested thousands deep ends with 65 in every verb", "[app]") {
   const TemporaryFolder folder;
   Write(folder, "deep.json", std::string(100000, '['));
-  for (const std::string verb :
+  for (const std::string& verb :
        {"pile show deep.json", "pile import deep.json --out o.json", "plan deep.json --out o.json",
         "render deep.json --out o.png", "run --pile deep.json --out o"}) {
     CheckRefused(folder, verb, 65, "deep.json: byte 65: lists and objects nest more than 64 deep");
@@ -81,7 +81,7 @@ TEST_CASE("Numbers of a tubes.json outside of their range end with 65, at once",
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& from, const std::string& to, const char* said) {
     Write(folder, "t.json", WithText(kTubes, from, to));
-    for (const std::string verb : {"plan t.json --out o.json", "render t.json --out o.png"}) {
+    for (const std::string& verb : {"plan t.json --out o.json", "render t.json --out o.png"}) {
       CheckRefused(folder, verb, 65, said);
     }
   };
@@ -160,9 +160,10 @@ TEST_CASE("A campaign too large to be run is refused before it takes memory", "[
 TEST_CASE("A pipe or device in place of a file ends with 66, at once", "[app]") {
   const TemporaryFolder folder;
   REQUIRE(::mkfifo((folder.path() + "/pipe").c_str(), 0600) == 0);
-  for (const std::string verb : {"config check pipe", "pile show pipe", "campaign run pipe --out o",
-                                 "run --pile pipe --out o", "emulate --faults pipe --out o",
-                                 "render pipe --out o.png", "pile show /dev/zero"}) {
+  for (const std::string& verb :
+       {"config check pipe", "pile show pipe", "campaign run pipe --out o",
+        "run --pile pipe --out o", "emulate --faults pipe --out o", "render pipe --out o.png",
+        "pile show /dev/zero"}) {
     CheckRefused(folder, verb, 66, "is a device, pipe or socket", "timeout 20 ");
   }
 }
@@ -226,8 +227,8 @@ TEST_CASE("Every verb that reads or makes a pile takes the bin's size from a key
   REQUIRE(shown.code == 0);
   CHECK(Json::parse(shown.out)["bin"]["size_m"] == asked);
   // In a bin too short for it the tube runs through a wall, for every verb.
-  for (const std::string verb : {"scan p.json --out o", "evaluate p.json --out o.json",
-                                 "render p.json --out o.png", "pile import p.json --out o.json"}) {
+  for (const std::string& verb : {"scan p.json --out o", "evaluate p.json --out o.json",
+                                  "render p.json --out o.png", "pile import p.json --out o.json"}) {
     CheckRefused(folder, verb + " --set bin.size_m=[0.45,0.4,0.1]", 65, "inside the bin's wall");
   }
 }
@@ -260,7 +261,8 @@ TEST_CASE("A pile that does not lie in the bin is refused by every verb that tak
 TEST_CASE("A part in place of a pile's own figures is told", "[app]") {
   const TemporaryFolder folder;
   Write(folder, "p.json", WithText(kPile, "\"mass_kg\": 0.055", "\"mass_kg\": 0.08"));
-  for (const std::string words : {" --part hose_b", " --set pile.part=hose_b"}) {
+  for (const std::string& words :
+       {std::string(" --part hose_b"), std::string(" --set pile.part=hose_b")}) {
     const Outcome outcome = RunProgram(folder, "pile import p.json --out o.json" + words);
     CHECK(outcome.code == 0);
     CHECK_THAT(outcome.err, Catch::Contains("p.json: part hose_b replaces what the file says: "
