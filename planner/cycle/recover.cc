@@ -1,4 +1,6 @@
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "planner/cycle/round_steps.h"
 #include "planner/pick/tool_path.h"
@@ -9,6 +11,9 @@ namespace {
 constexpr double kRetreatSpeed_m_s = 0.1, kRetreatAcceleration_m_s2 = 0.5;
 constexpr double kOverRim_m = 0.10;    ///< Down to here what hangs cannot touch the pile.
 constexpr double kOverFloor_m = 0.05;  ///< The lowest that the fingers go to let something go.
+/// And in steps from there on, where the tool does not fit between the walls: what hangs falls so
+/// far then, onto its like.
+constexpr double kHigher_m = 0.07;
 constexpr double kLowerSpeed_m_s = 0.05;
 constexpr double kRest_s = 0.5;
 
@@ -28,8 +33,28 @@ bool IsOverBin(const Bin& bin, const RigidTransform& X_BE) {
   return std::abs(p_NE.x()) < bin.half_x_m() && std::abs(p_NE.y()) < bin.half_y_m();
 }
 
-/// Down into the bin where the arm is, or over its middle first.
-PickPath LoweringPath(const CycleContext& c, bool over_middle) {
+/// A way to let something go in the bin: where the arm is, or over the bin's middle, turned there
+/// about the vertical.
+struct Lowering {
+  bool over_middle = false;
+  double turn_rad = 0.0;
+  double over_floor_m = kOverFloor_m;
+};
+
+/// The ways that may do, the nearest to what the arm does anyway first. Between high walls a
+/// housing beside the fingers fits only one way round.
+std::vector<Lowering> Lowerings(const Bin& bin, bool over_bin) {
+  std::vector<Lowering> out;
+  for (double height_m = kOverFloor_m; height_m < bin.wall_m() + kHigher_m; height_m += kHigher_m) {
+    if (over_bin) out.push_back({false, 0.0, height_m});
+    for (const double turn : {0.0, 90.0, -90.0, 45.0, -45.0}) {
+      out.push_back({true, Radians(turn), height_m});
+    }
+  }
+  return out;
+}
+
+PickPath LoweringPath(const CycleContext& c, const Lowering& way) {
   const Bin& bin = c.cell.bin;
   const double floor_B = bin.X_BN.translation().z();
   RigidTransform X_BE = c.executor.X_BE();
@@ -38,12 +63,13 @@ PickPath LoweringPath(const CycleContext& c, bool over_middle) {
     X_BE = Upright(X_BE);
     path.Line("upright", To(X_BE));
   }
-  if (over_middle) {
+  if (way.over_middle) {
+    X_BE.linear() = RotZ(way.turn_rad) * X_BE.linear();
     X_BE.translation().head<2>() = bin.X_BN.translation().head<2>();
     X_BE = AtHeight(X_BE, floor_B + c.cell.model.layout.carry_height_m);
     path.Transfer("to over the bin's middle", X_BE);
   }
-  const double rim_B = floor_B + bin.wall_m() + kOverRim_m, low_B = floor_B + kOverFloor_m;
+  const double rim_B = floor_B + bin.wall_m() + kOverRim_m, low_B = floor_B + way.over_floor_m;
   if (rim_B < X_BE.translation().z()) {
     path.Line("lowering", To(AtHeight(X_BE, rim_B)), c.setup.planner.lift_speed_m_s);
   }
@@ -100,11 +126,14 @@ StepOutcome OpenAndRetreat(CycleContext& c, double opening_m) {
 StepOutcome PutBack(CycleContext& c) {
   const CycleContext::During recovering(c, &AttemptReport::Phases::recover);
   c.observer.OnStep("putting back");
-  const bool over_middle = !IsOverBin(c.cell.bin, c.executor.X_BE());
-  StepOutcome lowered = c.CheckAndRun(LoweringPath(c, over_middle));
-  if (lowered.refused() && !over_middle) lowered = c.CheckAndRun(LoweringPath(c, true));
-  if (!lowered.ok()) return lowered;
-  return LetGo(c, c.ReleaseOpening(), kRest_s);
+  std::optional<StepOutcome> refused;
+  for (const Lowering& way : Lowerings(c.cell.bin, IsOverBin(c.cell.bin, c.executor.X_BE()))) {
+    const StepOutcome lowered = c.CheckAndRun(LoweringPath(c, way));
+    if (lowered.ok()) return LetGo(c, c.ReleaseOpening(), kRest_s);
+    if (!lowered.refused()) return lowered;
+    if (!refused) refused = lowered;
+  }
+  return *refused;
 }
 
 Acknowledgement PutBackLeftOver(CycleContext& c, const std::string& left) {
