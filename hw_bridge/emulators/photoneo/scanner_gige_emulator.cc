@@ -99,7 +99,7 @@ void ScannerGigeEmulator::FollowScan() {
   }
 }
 
-ScannerGigeEmulator::Taken ScannerGigeEmulator::FrameOf(OrganizedCloud cloud,
+ScannerGigeEmulator::Taken ScannerGigeEmulator::FrameOf(const OrganizedCloud& cloud,
                                                         const ScannerGigeConfig& config,
                                                         const GigeFrameSettings& settings) {
   Taken taken;
@@ -130,7 +130,7 @@ void ScannerGigeEmulator::Compute() {
     try {
       OrganizedCloud cloud = take();
       if (fault == ScanFault::kEmptyCloud) ClearPoints(cloud);
-      Taken taken = FrameOf(std::move(cloud), config, settings);
+      Taken taken = FrameOf(cloud, config, settings);
       for (std::vector<std::byte>& bytes : taken.frame.bytes) {
         if (fault == ScanFault::kGarbage) FillWithGarbage(bytes, number);
         if (corrupt) Corrupt(bytes);

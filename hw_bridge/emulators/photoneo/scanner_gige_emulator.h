@@ -48,7 +48,7 @@ class ScannerGigeEmulator : public ScannerEmulator {
     GvspSender::Frame frame;
     std::string problem;  ///< Then there is no frame.
   };
-  static Taken FrameOf(OrganizedCloud cloud, const ScannerGigeConfig& config,
+  static Taken FrameOf(const OrganizedCloud& cloud, const ScannerGigeConfig& config,
                        const GigeFrameSettings& settings);
   /// Nobody waits for the scan that runs any more.
   bool Outdated() const;
