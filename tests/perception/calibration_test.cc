@@ -161,6 +161,10 @@ TEST_CASE("The bin is found by touches alone", "[unit]") {
   wrong.touches[4].p_B += truth.X_BN.linear() * Vector3(0, 0.004, 0);
   CHECK_THROWS_WITH(CalibrateBin(wrong, kThreads),
                     Contains("check the poses of views and touches"));
+  // A floor touched 0.9 mm too high is let pass, but tells less.
+  CalibrationInput rough = input;
+  rough.touches[2].p_B.z() += 0.0009;
+  CHECK(CalibrateBin(rough, kThreads).uncertainty_m > 1.5 * found.uncertainty_m);
   // Of a floor nothing else may be wrong.
   wrong = input;
   wrong.touches[2].p_B.z() += 0.006;
