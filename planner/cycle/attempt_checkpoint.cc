@@ -11,6 +11,7 @@ namespace {
 
 // What a stored moment may say: far more than any cell's, far less than what would never end.
 constexpr double kLongest_s = 1e6, kFarthest_m = 10.0, kWidest_m = 1.0;
+constexpr double kClosed_m = -0.01;  // Fingers that press on each other may read less than nothing.
 constexpr double kFarthestTurn_rad = 20.0;
 constexpr double kLargestLoad = 1e4;  // N and N m.
 
@@ -63,7 +64,7 @@ PickPlan PlanFromJson(const JsonView& view) {
   static_cast<ObjectPath&>(plan.motion) = ObjectPathFromJson(view);
   plan.grasp.X_NG = TransformOfColumns(view.Field("X_NG"));
   plan.grasp.at_m = view.Field("at_m").AsNumber(0.0, kFarthest_m);
-  plan.grasp.opening_m = view.Field("opening_m").AsNumber(0.0, kWidest_m);
+  plan.grasp.opening_m = view.Field("opening_m").AsNumber(kClosed_m, kWidest_m);
   plan.used_simulator = view.Field("used_simulator").AsBool();
   if (const auto prediction = view.Optional("prediction")) {
     plan.prediction = Prediction{prediction->Field("displacement_m").AsNumber(),
@@ -133,7 +134,7 @@ AttemptCheckpoint AttemptCheckpointFromJson(const JsonView& view) {
   for (std::size_t k = 0; k < kNumJoints; ++k) {
     state.q[k] = q.Item(k).AsNumber(-kFarthestTurn_rad, kFarthestTurn_rad);
   }
-  state.opening_m = view.Field("opening_m").AsNumber(0.0, kWidest_m);
+  state.opening_m = view.Field("opening_m").AsNumber(kClosed_m, kWidest_m);
   return state;
 }
 

@@ -149,6 +149,7 @@ TEST_CASE("A stored attempt that is refused or stopped ends as it would have", "
 /// A checkpoint of any numbers.
 AttemptCheckpoint AnyCheckpoint(RandomStream& stream) {
   const auto number = [&] { return stream.Uniform(-2.0, 2.0) / 3.0; };
+  const auto positive = [&] { return stream.Uniform(0.0, 2.0) / 3.0; };
   const auto vector = [&] { return Vector3(number(), number(), number()); };
   const auto line = [&] {
     Polyline out;
@@ -160,7 +161,7 @@ AttemptCheckpoint AnyCheckpoint(RandomStream& stream) {
     out.outcome = stream.Uniform() < 0.5 ? HeldOutcome::kOne : HeldOutcome::kSeveral;
     out.force_N = number();
     out.torque_Nm = vector();
-    out.at_s = number();
+    out.at_s = positive();
     return out;
   };
   AttemptCheckpoint state;
@@ -179,14 +180,14 @@ AttemptCheckpoint AnyCheckpoint(RandomStream& stream) {
     }
   }
   plan.grasp.X_NG = MakeTransform(RotZ(number()) * RotX(kPi + number()), vector());
-  plan.grasp.at_m = number();
-  plan.grasp.opening_m = number();
+  plan.grasp.at_m = positive();
+  plan.grasp.opening_m = positive();
   plan.used_simulator = stream.Uniform() < 0.5;
   if (plan.used_simulator) plan.prediction = Prediction{number(), number(), 5};
   report.plan = plan;
   report.first_weighing = detection();
   report.detection = detection();
-  report.sim_s = {number(), number(), number(), number()};
+  report.sim_s = {positive(), positive(), positive(), positive()};
   NudgeReport nudge;
   nudge.tube = 3;
   nudge.direction_N = vector();
@@ -198,7 +199,7 @@ AttemptCheckpoint AnyCheckpoint(RandomStream& stream) {
   state.attempt_began = TimeNs(static_cast<std::int64_t>(stream.Uniform(0.0, 1e12)));
   for (int k = 0; k < 2; ++k) state.placed_T.push_back(line());
   for (double& q : state.q) q = number();
-  state.opening_m = number();
+  state.opening_m = positive();
   return state;
 }
 
