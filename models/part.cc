@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "models/base/error.h"
+#include "models/base/files.h"
 #include "models/base/frames.h"
 #include "models/base/json.h"
 #include "models/base/text.h"
@@ -191,6 +192,13 @@ Part LoadPart(const std::string& name_or_path) {
                                          ": is no part file, whose name ends in .toml; known "
                                          "parts: " +
                                          Join(PartNames()));
+  }
+  std::error_code code;
+  const auto there = std::filesystem::status(name_or_path, code).type();
+  if (code == std::errc::filename_too_long || there == std::filesystem::file_type::fifo ||
+      there == std::filesystem::file_type::directory ||
+      there == std::filesystem::file_type::character) {
+    ReadFile(name_or_path);  // Throws: it says what is there instead.
   }
   throw Error(ErrorKind::kMissing, "no part is named '" + Printable(name_or_path.substr(0, 80)) +
                                        "'; nearest is '" + NearestName(name_or_path, PartNames()) +

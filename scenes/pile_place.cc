@@ -8,7 +8,9 @@
 namespace tubetwin {
 namespace {
 
-constexpr double kStep_m = 0.005;     // A quarter of a wall's thickness.
+constexpr double kStep_m = 0.005;  // A quarter of a wall's thickness.
+constexpr double kHighest_m =
+    1.0;  // Over the rim: from there tubes may fall; what is higher is a mistake.
 constexpr double kTouching_m = 1e-6;  // An axis in the face of a wall or floor is not within it.
 
 /// Where a point lies, seen from the bin.
@@ -65,6 +67,12 @@ std::string Misplaced(const PileTube& tube, const Bin& bin) {
   if (lowest != nullptr) {
     return "its axis is inside the bin's floor or under it at " + At(*lowest) + ", " +
            Far(under_m) + " too low";
+  }
+  const auto by_height = [](const Vector3& a, const Vector3& b) { return a.z() < b.z(); };
+  const Vector3& bottom = *std::min_element(points_N.begin(), points_N.end(), by_height);
+  if (const double over_rim_m = bottom.z() - bin.wall_m(); over_rim_m > kHighest_m) {
+    return "it floats " + Far(over_rim_m) + " over the bin's rim at " + At(bottom) +
+           ", more than " + Far(kHighest_m);
   }
   if (in_wall != nullptr) {
     return "its axis is inside the bin's wall at " + At(*in_wall) + ", " + Far(beyond_m) +

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "models/base/error.h"
+#include "models/base/text.h"
 
 namespace tubetwin {
 namespace fs = std::filesystem;
@@ -27,7 +28,9 @@ std::string NameTooLong(const std::string& path) {
          "its folders";
 }
 
-[[noreturn]] void FailReading(const std::string& path, int error) {
+[[noreturn]] void FailReading(const std::string& file, int error) {
+  if (file.empty()) throw Error(ErrorKind::kMissing, "the name of a file is empty");
+  const std::string path = Printable(file);
   switch (error) {
     case ENOENT:
     case ENOTDIR:
@@ -58,9 +61,9 @@ class ReadHandle {
       return;
     }
     ::close(fd_);
-    throw Error(
-        ErrorKind::kMissing,
-        path + (S_ISDIR(status.st_mode) ? ": is a folder, a file is needed" : kNoRegularFile));
+    throw Error(ErrorKind::kMissing,
+                Printable(path) +
+                    (S_ISDIR(status.st_mode) ? ": is a folder, a file is needed" : kNoRegularFile));
   }
   ~ReadHandle() { ::close(fd_); }
   ReadHandle(const ReadHandle&) = delete;
@@ -84,7 +87,7 @@ class ReadHandle {
 };
 
 std::string TooLarge(const std::string& path, std::uint64_t max_bytes) {
-  return path + ": holds more than " + std::to_string(max_bytes) +
+  return Printable(path) + ": holds more than " + std::to_string(max_bytes) +
          " bytes; allowed: up to that for a file of this kind";
 }
 
@@ -128,7 +131,8 @@ void Replace(const std::string& path, Kept kept,
   const std::string folder = FolderOf(path);
   MakeFolder(folder);
   struct stat there = {};
-  if (::stat(path.c_str(), &there) == 0) {
+  const bool old = ::stat(path.c_str(), &there) == 0;
+  if (old) {
     // The rename would put a file in the device's place, for everybody.
     if (S_ISDIR(there.st_mode)) {
       throw Error(ErrorKind::kCannotCreate, path + ": is a folder, a file name is needed");
@@ -146,6 +150,10 @@ void Replace(const std::string& path, Kept kept,
     }
   } cleanup{out.path()};
   write(out);
+  // Who may read the old file may read the new one, and nobody else.
+  if (old && ::chmod(cleanup.file.c_str(), there.st_mode & 07777) != 0) {
+    throw Error(KindOfFailedCreation(errno), path + ": cannot be written: " + std::strerror(errno));
+  }
   if (kept == Kept::kOnDisk) out.Sync();
   out.Close();
   if (::rename(cleanup.file.c_str(), path.c_str()) != 0) {

@@ -29,6 +29,7 @@ constexpr double kMaxSigma_m = 0.001;
 constexpr std::size_t kFewestFloorTouches = 3, kFewestWallTouches = 4;
 /// Touches this near to two walls may be of either.
 constexpr double kCorner_m = 0.03;
+constexpr double kTouchSlack_m = 0.01;  ///< A tip is round, a rim is rounded.
 
 constexpr char kBinsPlace[] = "the bin's place", kScannersPose[] = "the scanner's pose";
 
@@ -120,6 +121,22 @@ void RequirePlanes(const std::vector<PlanePoints>& groups) {
          "into a corner, and check bin.size_m, bin.X_BN and the poses of the views");
 }
 
+/// Floor is touched between the walls, walls between floor and rim: else it was something else, or
+/// the bin is found in a wrong place.
+void RequireInside(const CalibrationTouch& touch, const Vector3& p_N, const Bin& bin) {
+  const double beyond_m = touch.on_floor ? std::max(std::abs(p_N.x()) - bin.half_x_m(),
+                                                    std::abs(p_N.y()) - bin.half_y_m())
+                                         : std::max(-p_N.z(), p_N.z() - bin.wall_m());
+  if (beyond_m <= kTouchSlack_m) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                ": lies %.0f mm %s of the bin that all touches and views together tell; look "
+                "whether floor and wall are named rightly, and at bin.size_m",
+                1e3 * beyond_m,
+                touch.on_floor ? "beyond a wall" : "under the floor or over the rim");
+  Refuse(touch.name + text);
+}
+
 void RequireClearTouches(const CalibrationInput& input, const RigidTransform& X_NB) {
   for (const CalibrationTouch& touch : input.touches) {
     const Vector3 p_N = X_NB * touch.p_B;
@@ -133,6 +150,7 @@ void RequireClearTouches(const CalibrationInput& input, const RigidTransform& X_
                     1e3 * to_x, 1e3 * to_y);
       Refuse(touch.name + text);
     }
+    RequireInside(touch, p_N, input.bin);
   }
 }
 

@@ -43,8 +43,10 @@ std::vector<Finding> CheckUnits(const CellModel& model, const Bin& bin) {
         {Verdict::kImpossible, pose.name,
          Number(pose.p.x()) + ", " + Number(pose.p.y()) + ", " + Number(pose.p.z()) + " m",
          "within " + Number(pose.longest_m) + " m",
-         "these look like millimetres: write " + Number(metres.x()) + ", " + Number(metres.y()) +
-             ", " + Number(metres.z())});
+         metres.norm() <= pose.longest_m
+             ? "these look like millimetres: write " + Number(metres.x()) + ", " +
+                   Number(metres.y()) + ", " + Number(metres.z())
+             : "measure it in metres"});
   }
   if (findings.empty() && layout.X_FE.translation().z() <= layout.X_FK.translation().z()) {
     findings.push_back(

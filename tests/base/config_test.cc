@@ -242,6 +242,11 @@ TEST_CASE("an override that is no key=value is a usage error") {
   CHECK_THROWS_WITH(source.AddOverride("a\xc1\x19=1"), Catch::StartsWith("--set a\\xC1\\x19=1: "));
 }
 
+TEST_CASE("a key that no person wrote is not shown whole") {
+  CHECK_THAT(ConfigError(std::string(5000, 'a') + " = 1"),
+             Catch::StartsWith("bad.toml:1:1: " + std::string(100, 'a') + "...: unknown key"));
+}
+
 TEST_CASE("odd bytes of a file are named in printable ones") {
   CHECK_THAT(ConfigError("seed = n\x19"), Catch::Contains("'n\\x19'"));
   CHECK_THAT(ConfigError("\"s\\u001bd\" = 1"), Catch::Contains("s\\x1Bd: unknown key"));

@@ -114,6 +114,22 @@ TEST_CASE("what is no file is not replaced by one") {
   CHECK(CountFiles(folder / ".") == 2);
 }
 
+TEST_CASE("what is written anew keeps who may read it") {
+  const TemporaryFolder folder;
+  const std::string file = folder / "a";
+  WriteFileAtomically(file, "old");
+  for (const fs::perms mode : {fs::perms(0600), fs::perms(0640)}) {
+    fs::permissions(file, mode);
+    WriteFileAtomically(file, "new");
+    CHECK(fs::status(file).permissions() == mode);
+  }
+}
+
+TEST_CASE("an empty name and a name of several lines are told as such") {
+  CHECK_THROWS_WITH(ReadFile(""), "the name of a file is empty");
+  CHECK_THROWS_WITH(ReadFile("a\nb"), "a\\x0Ab: no such file");
+}
+
 TEST_CASE("writing into a folder without permission cannot be created") {
   // Permissions do not bind root; the kernel's own file systems do.
   const TemporaryFolder folder;

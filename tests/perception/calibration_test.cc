@@ -182,6 +182,13 @@ TEST_CASE("The bin is found by touches alone", "[unit]") {
     one_side.touches[i].p_B = truth.X_BN * Vector3(0.1, -truth.half_y_m(), 0.02);
   }
   CHECK_THROWS_WITH(CalibrateBin(one_side, kThreads), Contains("only floor, wall -y"));
+  // The floor's touches were of something 0.3 m higher: the walls' are under it then.
+  CalibrationInput high = input;
+  for (CalibrationTouch& touch : high.touches) {
+    if (touch.on_floor) touch.p_B.z() += 0.3;
+  }
+  CHECK_THROWS_WITH(CalibrateBin(high, kThreads),
+                    Contains("touch 4: lies 250 mm under the floor or over the rim"));
 }
 
 TEST_CASE("A scanner on a stand is found with touches, and refused without", "[render]") {

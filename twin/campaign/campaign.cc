@@ -365,6 +365,12 @@ CampaignIdentity ReadCampaignIdentity(const std::string& folder) {
   if (!fs::exists(file)) {
     throw Error(ErrorKind::kMissing, folder + ": holds no campaign (campaign.json is missing)");
   }
+  if (fs::is_empty(file)) {
+    throw Error(ErrorKind::kBadData,
+                file +
+                    ": is empty, as a power cut may leave it; `campaign run` of the same "
+                    "campaign into this folder writes it anew");
+  }
   return IdentityFromJson(ReadJsonFile(file), file);
 }
 

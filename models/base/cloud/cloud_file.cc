@@ -35,17 +35,7 @@ constexpr std::uint64_t kMaxUnpackedBytes = 256 * 1024 * 1024;
 
 CloudFile::CloudFile(const std::string& path, const std::string& kind) : path_(path) {
   std::error_code code;
-  const fs::file_status status = fs::status(path, code);
-  if (code && status.type() != fs::file_type::not_found) {
-    throw Error(ErrorKind::kMissing, path + ": cannot be read: " + code.message());
-  }
-  if (!fs::exists(status)) throw Error(ErrorKind::kMissing, path + ": no such file");
-  if (fs::is_directory(status)) {
-    throw Error(ErrorKind::kMissing, path + ": is a folder, a file is needed");
-  }
-  if (!fs::is_regular_file(status)) {
-    throw Error(ErrorKind::kBadData, path + ": is no regular file, so its size cannot be checked");
-  }
+  if (!fs::is_regular_file(path, code)) ReadFile(path);  // Throws: it says what is there instead.
   if (CloudEnding(path).ends_with(kPacked)) {
     std::string content = DecompressedFile(ReadFile(path), kMaxUnpackedBytes, path);
     size_ = content.size();

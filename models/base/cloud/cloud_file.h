@@ -16,10 +16,9 @@ namespace tubetwin {
 /// models/base. One thread.
 class CloudFile {
  public:
-  /// Throws Error(kMissing) when there is no such file, Error(kBadData) when it is no regular file,
-  /// empty, or a damaged or too large .zst.
-  /// `kind` is what it should be, "PCD cloud" or "PLY file": a file that is something else by its
-  /// first bytes is refused by that name.
+  /// Throws Error(kMissing) when there is no such regular file, Error(kBadData) when it is empty,
+  /// or a damaged or too large .zst. `kind` is what it should be, "PCD cloud" or "PLY file": a file
+  /// that is something else by its first bytes is refused by that name.
   CloudFile(const std::string& path, const std::string& kind);
 
   const std::string& path() const { return path_; }

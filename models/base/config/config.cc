@@ -26,7 +26,9 @@ constexpr std::uint64_t kMaxTomlBytes = std::uint64_t{4} << 20;
 
 [[noreturn]] void Fail(const std::string& place, const std::string& path,
                        const std::string& problem) {
-  throw Error(ErrorKind::kConfig, place + ": " + Printable(path) + ": " + problem);
+  constexpr std::size_t kShown = 100;
+  throw Error(ErrorKind::kConfig, place + ": " + Printable(path.substr(0, kShown)) +
+                                      (path.size() > kShown ? "..." : "") + ": " + problem);
 }
 
 /// Full paths of every entry whose last part is `key`.

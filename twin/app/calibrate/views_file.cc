@@ -127,7 +127,11 @@ void ReadViewsFile(const std::string& folder_or_file, const ArmModel& arm, const
     CalibrationView view;
     view.X_BF = FlangeOf(entry, table, arm);
     view.name = entry.cloud;
-    view.cloud = ReadCloud(entry.cloud, MetresPer(units));
+    try {
+      view.cloud = ReadCloud(entry.cloud, MetresPer(units));
+    } catch (const Error& error) {
+      throw Error(error.kind(), table.place() + ": cloud: " + error.what());
+    }
     input.views.push_back(std::move(view));
   }
   for (const ConfigSource& table : source.TakeTables("touch")) {
