@@ -52,5 +52,101 @@ TEST_CASE("A file given to the wrong verb is refused with what takes it", "[app]
   }
 }
 
+TEST_CASE("A TOML file of another kind is refused with what it is and what takes it", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "camp.toml", "rounds = 2\n[[variant]]\npart = \"pvc_a\"\ncount = 2\n");
+  Write(folder, "cell.toml", RunProgram(folder, "config model leao2020").out);
+  Write(folder, "part.toml", "name = \"p\"\nradius_m = 0.0125\nlength_m = 0.5\nmass_kg = 0.05\n");
+  Write(folder, "faults.toml", "[[fault]]\nat_s = 1.0\n");
+  Write(folder, "views.toml", "[[view]]\ncloud = \"view_0.pcd\"\n");
+  Write(folder, "scenario.toml", "[pile]\ncount = 3\n");
+  const std::string camp = "(camp.toml is a campaign: tubetwin campaign run camp.toml)";
+  const std::string cell = "(cell.toml is a cell model: use it by --set cell.model=cell.toml";
+  const std::string part = "(part.toml is a part: --part part.toml";
+  const std::string faults = "(faults.toml is a script of faults: tubetwin emulate --faults";
+  const std::string views = "(views.toml is a list of views: tubetwin calibrate hand-eye --views";
+  const std::string scenario = "(scenario.toml is a scenario or cell file: tubetwin run scenario";
+  const struct {
+    std::string arguments, said;
+  } cases[] = {
+      {"campaign run cell.toml --out o", cell},
+      {"campaign run part.toml --out o", part},
+      {"campaign run scenario.toml --out o", scenario},
+      {"run camp.toml --out o", camp},
+      {"run part.toml --out o", part},
+      {"run faults.toml --out o", faults},
+      {"run --part camp.toml --out o", camp},
+      {"run --part=cell.toml --out o", cell},
+      {"run --set cell.model=camp.toml --out o", camp},
+      {"config check camp.toml", camp},
+      {"config dump views.toml", views},
+      {"part check cell.toml", cell},
+      {"part check scenario.toml", scenario},
+      {"doctor --cell views.toml", views},
+      {"emulate --faults camp.toml --out o", camp},
+  };
+  for (const auto& c : cases) {
+    INFO(c.arguments);
+    CheckRefused(folder, c.arguments, 78, c.said);
+  }
+  CheckRefused(folder, "render camp.toml --out a.png", 65, camp);
+  CHECK_FALSE(std::filesystem::exists(folder / "o"));
+}
+
+TEST_CASE("A faulty TOML file of the right kind is not told what it is", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "camp.toml", "rounds = 2\nbogus = 1\n[[variant]]\ncount = 2\n");
+  Write(folder, "scenario.toml", "[pile]\nbogus = 3\n");
+  Write(folder, "part.toml", "radius_m = 0.0125\nlength_m = 0.5\nbogus = 0.05\n");
+  Write(folder, "faults.toml", "[[fault]]\nbogus = 1.0\n");
+  for (const char* arguments :
+       {"campaign run camp.toml --out o", "run scenario.toml --out o",
+        "doctor --cell scenario.toml", "part check part.toml", "run --part part.toml --out o",
+        "run --set pile.part=part.toml --out o", "emulate --faults faults.toml --out o"}) {
+    INFO(arguments);
+    CheckRefused(folder, arguments, 78, "bogus");
+    CHECK_THAT(RunProgram(folder, arguments).err, !Catch::Contains(" is a "));
+  }
+}
+
+TEST_CASE("A recording given to the other verb of recordings is told which takes it", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "recording.bin", "of motions");
+  Write(folder, "cell.rec.zst", "of a cell");
+  CheckRefused(folder, "replay recording.bin", 65, "tubetwin render FILE");
+  CheckRefused(folder, "replay recording.bin --mcap a.mcap", 65, "tubetwin render FILE");
+  CheckRefused(folder, "render cell.rec.zst --out a.png", 65, "tubetwin replay FILE");
+  CHECK_THAT(RunProgram(folder, "replay cell.rec.zst").err, !Catch::Contains("are for"));
+}
+
+TEST_CASE("Options of render that say nothing of what is drawn are refused by name", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "p.json", kPile);
+  Write(folder, "t.json", R"({"schema": "tubetwin/tubes/1"})");
+  Write(folder, "c.pcd", "");
+  Write(folder, "recording.bin", "");
+  const struct {
+    const char *arguments, *said;
+  } cases[] = {
+      {"p.json --frame 5", "p.json: --frame is for recordings"},
+      {"p.json --speed 3", "p.json: --speed is for recordings"},
+      {"p.json --speed 1", "p.json: --speed is for recordings"},
+      {"t.json --frame 0", "t.json: --frame is for recordings"},
+      {"t.json --part hose_b", "t.json: --part is for piles"},
+      {"c.pcd --part hose_b", "c.pcd: --part is for piles"},
+      {"c.pcd --speed 2", "c.pcd: --speed is for recordings"},
+      {"recording.bin --part hose_b", "recording.bin: --part is for piles"},
+      {"recording.bin --bin 0.8,0.6,0.09", "recording.bin: --bin is for piles, tubes.json and"},
+      {"recording.bin --units mm", "recording.bin: --units is for clouds"},
+      {"recording.bin --speed 3", "recording.bin: --speed is for films"},
+      {"p.json --units mm", "p.json: --units is for clouds"},
+  };
+  for (const auto& c : cases) {
+    INFO(c.arguments);
+    CheckRefused(folder, std::string("render --out a.png ") + c.arguments, 64, c.said);
+  }
+  CheckRefused(folder, "render --out a.mp4 recording.bin --frame 3", 64, "--frame is for pictures");
+}
+
 }  // namespace
 }  // namespace tubetwin

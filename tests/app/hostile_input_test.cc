@@ -210,6 +210,85 @@ TEST_CASE("A key that a verb does not use is refused by name, and an unknown one
   CheckNothingWritten(folder, "o.json");
 }
 
+TEST_CASE("A key of a group that a verb uses only in part is refused by name", "[app]") {
+  const TemporaryFolder folder;
+  Write(folder, "p.json", kPile);
+  Write(folder, "t.json", kTubes);
+  const std::string generate = "pile generate --part pvc_a --count 1 --out o.json";
+  const std::string scan = "scan p.json --view 0 --out o";
+  const std::string evaluate = "evaluate p.json --out o.json", plan = "plan t.json --out o.json";
+  const std::string pose = "[0,0,0.2,1,0,0,0]";
+  for (const auto& [verb, text] : std::vector<std::pair<std::string, std::string>>{
+           {generate, "physics.pad_friction=[0.6,0.7]"},
+           {generate, "physics.pad_torsion_m=[0.004,0.005]"},
+           {generate, "physics.depth_noise_scale=[1,1]"},
+           {generate, "physics.wrench_noise_counts=2"},
+           {generate, "physics.wrench_bias_walk_N=0.2"},
+           {generate, "physics.wrench_cross_talk=0.02"},
+           {generate, "physics.hand_eye_error_m=0.001"},
+           {generate, "physics.hand_eye_error_deg=0.1"},
+           {scan, "physics.pad_friction=[0.6,0.7]"},
+           {scan, "physics.tube_friction=[0.3,0.4]"},
+           {scan, "physics.mass_scale=[1,1]"},
+           {scan, "scan.rescan_all=true"},
+           {scan, "cell.scanner.host=10.0.0.1"},
+           {scan, "cell.scanner.driver=gige"},
+           {scan, "cell.scanner.timeout_s=3"},
+           {scan, "calibration.X_FE=" + pose},
+           {evaluate, "planner.samples=3"},
+           {evaluate, "planner.grasp_step_m=0.01"},
+           {evaluate, "calibration.X_FS=" + pose},
+           {plan, "scan.rescan_all=true"},
+           {plan, "scan.resolution=1032x772"},
+           {plan, "cycle.settle_s=1"},
+           {plan, "cycle.grip_force_N=50"},
+           {plan, "cycle.attempts_per_tube=2"}}) {
+    const std::string key = text.substr(0, text.find('='));
+    CheckRefused(folder, verb + " --set '" + text + "'", 64, "--set " + key + ": `");
+  }
+  for (const std::string& verb : {generate, scan, evaluate, plan}) {
+    CheckRefused(folder, verb + " --set bin.mesh_units=mm", 64,
+                 "--set bin.mesh_units: is the unit of bin.mesh, which is not given");
+  }
+  CheckRefused(folder, generate + " --set bin.mesh=b.stl --set bin.mesh_units=mm", 66, "b.stl");
+  CheckNothingWritten(folder, "o");
+  CheckNothingWritten(folder, "o.json");
+}
+
+TEST_CASE("Keys that make a pile or its scan change it", "[app]") {
+  const TemporaryFolder folder;
+  const auto made = [&](const std::string& words, const std::string& file) {
+    const Outcome outcome = RunProgram(folder, words);
+    INFO(words << ": " << outcome.err);
+    REQUIRE(outcome.code == 0);
+    return ReadFile(folder / file);
+  };
+  const std::string generate = "pile generate --part hose_b --count 2 --seed 1 --out g.json";
+  const std::string pile = made(generate, "g.json");
+  for (const char* text :
+       {"physics.randomize=false", "physics.tube_friction=[0.9,0.9]",
+        "physics.bending_stiffness_Nm2=[0.4,0.4]", "physics.mass_scale=[1.5,1.5]"}) {
+    CHECK(made(generate + " --set " + text, "g.json") != pile);
+  }
+  Write(folder, "p.json", kPile);
+  const std::string scan = "scan p.json --view 0 --out s";
+  const std::string cloud = made(scan, "s/view_0.pcd");
+  for (const char* text :
+       {"physics.randomize=false", "physics.depth_noise_scale=[2,2]",
+        "physics.hand_eye_error_m=0.002", "physics.hand_eye_error_deg=0.5", "scan.overhead_m=0.45",
+        "cell.scanner.hand_eye_error=0", "cell.scanner.noise=false"}) {
+    CHECK(made(scan + " --set " + text, "s/view_0.pcd") != cloud);
+  }
+}
+
+TEST_CASE("A seed that is given twice is refused", "[app]") {
+  const TemporaryFolder folder;
+  for (const char* verb : {"run --out o", "campaign run c.toml --out o", "config dump"}) {
+    CheckRefused(folder, std::string(verb) + " --seed 1 --set seed=3", 64,
+                 "--seed and --set seed say the same thing: give one");
+  }
+}
+
 TEST_CASE("Every verb that reads or makes a pile takes the bin's size from a key", "[app]") {
   const TemporaryFolder folder;
   Write(folder, "p.json", kPile);

@@ -35,6 +35,8 @@ TEST_CASE("A jog that is not allowed moves nothing and says what is", "[unit]") 
   CHECK_THROWS_WITH(JogFake(fake, 7, 1.0), Contains("--joint is 7"));
   CHECK_THROWS_WITH(JogFake(fake, 1, 1.01), Contains("--degrees is 1.01, allowed are -1 to 1"));
   CHECK_THROWS_WITH(JogFake(fake, 1, 0.0), Contains("--degrees is 0"));
+  CHECK_THROWS_WITH(JogFake(fake, 1, 1e-300), Contains("at least 0.001 either way"));
+  CHECK_THROWS_WITH(JogFake(fake, 1, -0.00099), Contains("at least 0.001 either way"));
   CHECK_THROWS_WITH(JogFake(fake, 1, std::nan("")), Contains("--degrees is"));
   fake.arm.q[2] = fake.model.arm.joints[2].upper_rad;
   CHECK_THROWS_WITH(JogFake(fake, 3, 1.0), Contains("joint 3") && Contains("other way"));

@@ -77,42 +77,12 @@ void RequireSoundCell(const Scenario& scenario, const Common& common) {
   }
 }
 
-namespace {
-
-bool IsCellModel(const std::string& file) {
-  if (!file.ends_with(".toml")) return false;
-  try {
-    LoadCellModel(file);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-/// A cell model is no scenario, though both are called cell files.
-void RefuseCellModels(const std::vector<std::string>& files) {
-  for (const std::string& file : files) {
-    if (!IsCellModel(file)) continue;
-    throw Error(ErrorKind::kConfig,
-                file + ": is a cell model, which says what a cell is like; use it by " +
-                    "--set cell.model=" + file + " or [cell] model");
-  }
-}
-
-}  // namespace
-
 Scenario LoadScenario(const std::vector<std::string>& files, const Common& common,
                       const std::string& profile) {
   ConfigSource source;
   for (const std::string& file : files) source.AddFile(file);
   for (const std::string& text : common.overrides) source.AddOverride(text);
-  Scenario scenario;
-  try {
-    scenario = ReadScenario(source, profile);
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::kConfig) RefuseCellModels(files);
-    throw;
-  }
+  Scenario scenario = ReadScenario(source, profile);
   if (common.seed) scenario.seed = *common.seed;
   return scenario;
 }

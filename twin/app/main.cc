@@ -16,6 +16,7 @@
 #include "models/base/error.h"
 #include "twin/app/command_line/suggest.h"
 #include "twin/app/common.h"
+#include "twin/app/input/file_advice.h"
 
 namespace tubetwin {
 namespace {
@@ -66,7 +67,13 @@ int Run(int argc, char** argv) {
     return refuse(why.empty() ? e.what() : why);
   }
   RefuseUnusedKeys(common.overrides, common.used_keys, common.verb);
-  return common.action();
+  if (common.seed) RefuseSaidTwice(common.overrides, "--seed", {"seed"});
+  try {
+    return common.action();
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kConfig) throw;
+    throw Error(error.kind(), error.what() + AdviceForWords(error.what(), common.verb, words));
+  }
 }
 
 int RunAndTell(int argc, char** argv) {

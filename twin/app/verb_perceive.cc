@@ -91,7 +91,7 @@ void AddPerceiveVerb(CLI::App& app, Common& common) {
   verb->add_option("--labelled", given->labelled,
                    "Also write each point's tube, as PCD or PLY by the name's ending: the first "
                    "cloud here, others with _1, _2 ...");
-  AddCommonOptions(*verb, common, {"profile", "bin", "perception", "cell.model"},
+  AddCommonOptions(*verb, common, BinKeysAnd({"profile", "perception", "cell.model"}),
                    "tubes.json to write", true);
   verb->callback([given, &common] {
     common.action = [given, &common] { return PerceiveClouds(*given, common); };

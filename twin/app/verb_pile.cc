@@ -114,7 +114,9 @@ void AddPileVerb(CLI::App& app, Common& common) {
   generate->add_option("--arrangement", made->arrangement, "How they are laid")
       ->check(CLI::IsMember({"dropped", "stirred", "threaded"}));
   generate->add_option("--bin", made->bin, "Inner size of the bin: long,short,wall in metres");
-  AddCommonOptions(*generate, common, {"seed", "bin", "physics", "cell.model"},
+  AddCommonOptions(*generate, common,
+                   BinKeysAnd({"seed", "cell.model", "physics.randomize", "physics.tube_friction",
+                               "physics.bending_stiffness_Nm2", "physics.mass_scale"}),
                    "Pile file to write (pile.json)", true);
   generate->callback(
       [made, &common] { common.action = [made, &common] { return Generate(*made, common); }; });

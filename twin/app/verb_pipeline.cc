@@ -166,6 +166,43 @@ int EvaluatePile(const EvaluateOptions& given, const Common& common) {
 
 }  // namespace
 
+namespace {
+
+/// What the picture of a pile that lies still depends on.
+UsedKeys KeysOfScan() {
+  return PileKeysAnd({"seed",
+                      "physics.randomize",
+                      "physics.depth_noise_scale",
+                      "physics.hand_eye_error_m",
+                      "physics.hand_eye_error_deg",
+                      "scan.views",
+                      "scan.resolution",
+                      "scan.overhead_m",
+                      "cell.model",
+                      "calibration.X_BS",
+                      "cell.scanner.hand_eye_error",
+                      "cell.scanner.shadows",
+                      "cell.scanner.hard_range",
+                      "cell.scanner.soft_range",
+                      "cell.scanner.incidence",
+                      "cell.scanner.weak_signal",
+                      "cell.scanner.highlights",
+                      "cell.scanner.flying_pixels",
+                      "cell.scanner.interreflections",
+                      "cell.scanner.noise",
+                      "cell.scanner.bias"});
+}
+
+/// What motions and roll-outs of the evaluator alone depend on: no grasp is chosen.
+UsedKeys KeysOfEvaluate() {
+  return PileKeysAnd({"seed", "profile", "planner.lift_m", "planner.escape_first_lift_m",
+                      "planner.escape_const_m", "planner.wall_safety_m", "planner.lift_speed_m_s",
+                      "planner.motions", "planner.classes", "evaluator", "cell.model",
+                      "calibration.X_FK", "calibration.X_FE"});
+}
+
+}  // namespace
+
 void AddScanVerb(CLI::App& app, Common& common) {
   auto given = std::make_shared<ScanOptions>();
   CLI::App* verb =
@@ -178,10 +215,7 @@ void AddScanVerb(CLI::App& app, Common& common) {
   verb->add_option("--bin", given->bin, "Inner size of the bin: long,short,wall in metres");
   verb->add_flag("--labels", given->labels,
                  "Write each point's tube and the true pose, for scoring");
-  AddCommonOptions(
-      *verb, common,
-      PileKeysAnd({"seed", "physics", "scan", "cell.model", "cell.scanner", "calibration"}),
-      "Folder for view_N.pcd and .ply", true);
+  AddCommonOptions(*verb, common, KeysOfScan(), "Folder for view_N.pcd and .ply", true);
   verb->callback(
       [given, &common] { common.action = [given, &common] { return ScanPile(*given, common); }; });
 }
@@ -201,10 +235,7 @@ void AddEvaluateVerb(CLI::App& app, Common& common) {
   verb->add_option("--samples", given->samples, "Roll-outs per candidate")
       ->check(CLI::Range(1, 1000));
   verb->add_flag("--full", given->full, "Nothing pruned or cut short");
-  AddCommonOptions(
-      *verb, common,
-      PileKeysAnd({"seed", "profile", "planner", "evaluator", "cell.model", "calibration"}),
-      "scores.json to write", true);
+  AddCommonOptions(*verb, common, KeysOfEvaluate(), "scores.json to write", true);
   verb->callback([given, &common] {
     common.action = [given, &common] { return EvaluatePile(*given, common); };
   });

@@ -17,12 +17,28 @@
 namespace tubetwin {
 namespace {
 
-// What is read of tubes.json needs no perception; its bin says where it stands.
-const UsedKeys kKeysOfScene = {"seed",      "profile", "bin",        "scan",       "planner",
-                               "evaluator", "cycle",   "cell.model", "calibration"};
-const UsedKeys kKeysOfSceneWithBin = {"seed",           "profile",    "bin.size_m", "bin.mesh",
-                                      "bin.mesh_units", "scan",       "planner",    "evaluator",
-                                      "cycle",          "cell.model", "calibration"};
+// Of the cycle the way of the arm; what it does with a load is not planned.
+const UsedKeys kKeysOfPlanning = {"seed",
+                                  "profile",
+                                  "scan.views",
+                                  "scan.overhead_m",
+                                  "planner",
+                                  "evaluator",
+                                  "cycle.transfer_speed_m_s",
+                                  "cycle.transfer_acceleration_m_s2",
+                                  "cycle.approach_speed_m_s",
+                                  "cycle.guarded_speed_m_s",
+                                  "cycle.approach_m",
+                                  "cycle.guarded_m",
+                                  "cycle.first_lift_m",
+                                  "cell.model",
+                                  "calibration"};
+
+/// `first`, then what planning uses.
+UsedKeys PlanningKeysAnd(UsedKeys first) {
+  first.insert(first.end(), kKeysOfPlanning.begin(), kKeysOfPlanning.end());
+  return first;
+}
 
 /// What is planned in: perceived tubes, and the points of the clouds where these are given.
 struct Seen {
@@ -52,7 +68,11 @@ Seen ReadScene(const CloudInput& input, const Scenario& scenario, const Common& 
     throw Error(ErrorKind::kUsage, file + ": names no part; give --part");
   }
   const bool has_bin = document.Optional("bin").has_value();
-  RequireUsedKeys(common, has_bin ? kKeysOfSceneWithBin : kKeysOfScene, "of tubes.json");
+  // What is read of tubes.json needs no perception; its bin says where it stands.
+  RequireUsedKeys(common,
+                  PlanningKeysAnd(has_bin ? UsedKeys{"bin.size_m", "bin.mesh", "bin.mesh_units"}
+                                          : BinKeysAnd({})),
+                  "of tubes.json");
   seen.bin = ScenarioBin(scenario, std::nullopt);
   if (has_bin) {
     const std::optional<std::array<double, 3>> asked_m = AskedOverrides(scenario).bin_size_m;
@@ -151,10 +171,8 @@ void AddPlanVerb(CLI::App& app, Common& common) {
       ->required();
   AddCloudOptions(*verb, *input)
       ->description("Part name or part file; default: what tubes.json names");
-  AddCommonOptions(*verb, common,
-                   {"seed", "profile", "bin", "perception", "scan", "planner", "evaluator", "cycle",
-                    "cell.model", "calibration"},
-                   "plan.json to write", true);
+  AddCommonOptions(*verb, common, PlanningKeysAnd(BinKeysAnd({"perception"})), "plan.json to write",
+                   true);
   verb->callback(
       [input, &common] { common.action = [input, &common] { return Plan(*input, common); }; });
 }

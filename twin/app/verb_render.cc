@@ -23,7 +23,7 @@ namespace {
 
 struct RenderOptions {
   std::string file, part, bin, units;
-  int frame = 0, speed = 1;
+  std::optional<int> frame, speed;
 };
 
 /// Lines that hatch the cells of a row that no view saw.
@@ -108,22 +108,41 @@ std::optional<Json> TubesJson(const std::string& file) {
   return json;
 }
 
+/// What is drawn.
+enum class Drawn { kPile, kTubes, kCloud, kRecording };
+
+/// Refuses options that say nothing of what is drawn, or of the kind of file that is written.
+void RefuseOptions(const RenderOptions& given, Drawn drawn, bool film) {
+  const auto refuse = [&](bool wrong, const char* option, const char* what_for) {
+    if (!wrong) return;
+    throw Error(ErrorKind::kUsage, given.file + ": " + option + " is for " + what_for);
+  };
+  const bool recording = drawn == Drawn::kRecording;
+  refuse(!given.units.empty() && drawn != Drawn::kCloud, "--units", "clouds (.pcd, .ply)");
+  refuse(!given.part.empty() && drawn != Drawn::kPile, "--part", "piles");
+  refuse(!given.bin.empty() && recording, "--bin", "piles, tubes.json and clouds");
+  refuse(given.frame && !recording, "--frame", "recordings (recording.bin)");
+  refuse(given.speed && !recording, "--speed", "recordings (recording.bin)");
+  refuse(given.frame && film, "--frame", "pictures (--out F.png)");
+  refuse(given.speed && !film, "--speed", "films (--out F.mp4)");
+}
+
 int Render(const RenderOptions& given, const Common& common) {
   const std::string ending = std::filesystem::path(common.out).extension().string();
   if (ending != ".png" && ending != ".mp4") {
     throw Error(ErrorKind::kUsage,
                 "--out '" + common.out + "': a name ending in .png or .mp4 is needed");
   }
-  if (!given.units.empty() && !IsCloud(given.file)) {
-    throw Error(ErrorKind::kUsage, given.file + ": --units is for clouds (.pcd, .ply)");
-  }
+  const bool film = ending == ".mp4";
   const std::string kind = LowerCase(std::filesystem::path(given.file).extension().string());
   if (kind == ".json" || kind == ".csv" || kind == ".txt") {
-    if (ending != ".png") {
+    if (film) {
       throw Error(ErrorKind::kUsage,
                   given.file + ": a pile gives a picture; a film needs a recording");
     }
-    if (const auto json = TubesJson(given.file)) {
+    const auto json = TubesJson(given.file);
+    RefuseOptions(given, json ? Drawn::kTubes : Drawn::kPile, film);
+    if (json) {
       RenderTubes(given, *json, common);
       return 0;
     }
@@ -133,10 +152,11 @@ int Render(const RenderOptions& given, const Common& common) {
     return 0;
   }
   if (IsCloud(given.file)) {
-    if (ending != ".png") {
+    if (film) {
       throw Error(ErrorKind::kUsage,
                   given.file + ": a cloud gives a picture; a film needs a recording");
     }
+    RefuseOptions(given, Drawn::kCloud, film);
     RenderCloud(given, common);
     return 0;
   }
@@ -145,21 +165,23 @@ int Render(const RenderOptions& given, const Common& common) {
     throw Error(ErrorKind::kBadData,
                 given.file + ": is no recording, pile, tubes.json or cloud" + advice);
   }
+  RefuseOptions(given, Drawn::kRecording, film);
   RequireUsedKeys(common, {}, "of a recording");
   const Recording recording = ReadRecording(given.file);
-  if (ending == ".mp4") {
-    RenderFilm(recording, common.out, given.speed, common.parallelism());
+  if (film) {
+    RenderFilm(recording, common.out, given.speed.value_or(1), common.parallelism());
     return 0;
   }
   if (recording.frames.empty()) {
     throw Error(ErrorKind::kBadData, given.file + ": holds no frame; at least one is needed");
   }
-  if (given.frame >= static_cast<int>(recording.frames.size())) {
-    throw Error(ErrorKind::kUsage, "--frame " + std::to_string(given.frame) + ": " + given.file +
+  const int frame = given.frame.value_or(0);
+  if (frame >= static_cast<int>(recording.frames.size())) {
+    throw Error(ErrorKind::kUsage, "--frame " + std::to_string(frame) + ": " + given.file +
                                        " has frames 0 to " +
                                        std::to_string(recording.frames.size() - 1));
   }
-  RenderPicture(recording, given.frame, common.out);
+  RenderPicture(recording, frame, common.out);
   return 0;
 }
 

@@ -6,7 +6,9 @@
 #include "hw_bridge/mcap/mcap_export.h"
 #include "models/base/error.h"
 #include "models/base/json.h"
+#include "models/base/text.h"
 #include "twin/app/common.h"
+#include "twin/app/input/file_advice.h"
 #include "twin/round/replay_round.h"
 
 namespace tubetwin {
@@ -69,7 +71,7 @@ void PrintResult(const ReplayResult& result) {
   }
 }
 
-int Replay(const ReplayVerb& given, const Common& common) {
+int ReplayGiven(const ReplayVerb& given, const Common& common) {
   Json exported = nullptr;
   if (!given.mcap.empty()) {
     exported = Export(given);
@@ -101,6 +103,19 @@ int Replay(const ReplayVerb& given, const Common& common) {
     PrintResult(result);
   }
   return given.verify && result.tally.difference ? 1 : 0;
+}
+
+/// The refusal of another file says which verb takes it.
+int Replay(const ReplayVerb& given, const Common& common) {
+  try {
+    return ReplayGiven(given, common);
+  } catch (const Error& error) {
+    const std::string low = LowerCase(given.file);
+    if (error.kind() != ErrorKind::kBadData || low.ends_with(".rec") || low.ends_with(".rec.zst")) {
+      throw;
+    }
+    throw Error(error.kind(), error.what() + AdviceFor(given.file));
+  }
 }
 
 }  // namespace

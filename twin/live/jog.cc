@@ -31,9 +31,10 @@ void RequireAllowed(const JogOptions& options) {
     throw Error(ErrorKind::kUsage, "--joint is " + std::to_string(options.joint) +
                                        ", allowed are 1 (next to the base) to 6");
   }
-  if (!(std::abs(options.degrees) <= kMaxJog_deg) || options.degrees == 0.0) {
+  if (!(std::abs(options.degrees) <= kMaxJog_deg) || std::abs(options.degrees) < kLeastJog_deg) {
     throw Error(ErrorKind::kUsage, "--degrees is " + Number(options.degrees) +
-                                       ", allowed are -1 to 1 and not 0: jog once more to go on");
+                                       ", allowed are -1 to 1, at least 0.001 either way: "
+                                       "jog once more to go on");
   }
 }
 

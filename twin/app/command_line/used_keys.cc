@@ -33,10 +33,25 @@ UsedKeys PileKeysAnd(const UsedKeys& more) {
   return keys;
 }
 
+UsedKeys BinKeysAnd(const UsedKeys& more) {
+  UsedKeys keys = {"bin.size_m", "bin.mesh", "bin.mesh_units", "bin.X_BN"};
+  keys.insert(keys.end(), more.begin(), more.end());
+  return keys;
+}
+
 void RefuseUnusedKeys(const std::vector<std::string>& overrides, const UsedKeys& used,
                       const std::string& who) {
+  const bool mesh = std::any_of(overrides.begin(), overrides.end(), [](const std::string& text) {
+    return KeyOfOverride(text) == "bin.mesh";
+  });
   for (const std::string& text : overrides) {
     const std::string key = KeyOfOverride(text);
+    // Only verbs that read no scenario file name the single key: no file can give the mesh.
+    const bool names_unit = std::count(used.begin(), used.end(), "bin.mesh_units") > 0;
+    if (key == "bin.mesh_units" && names_unit && !mesh) {
+      throw Error(ErrorKind::kUsage,
+                  "--set bin.mesh_units: is the unit of bin.mesh, which is not given; give both");
+    }
     if (std::any_of(used.begin(), used.end(),
                     [&](const std::string& one) { return Covers(one, key); })) {
       continue;  // Its reader checks it.
@@ -47,6 +62,15 @@ void RefuseUnusedKeys(const std::vector<std::string>& overrides, const UsedKeys&
     alone.ReadInto(any);
     throw Error(ErrorKind::kUsage, "--set " + key + ": `" + who + "` does not use this key; " +
                                        (used.empty() ? "it uses none" : "it uses " + Join(used)));
+  }
+}
+
+void RefuseSaidTwice(const std::vector<std::string>& overrides, const std::string& option,
+                     const UsedKeys& same) {
+  for (const std::string& text : overrides) {
+    const std::string key = KeyOfOverride(text);
+    if (std::count(same.begin(), same.end(), key) == 0) continue;
+    throw Error(ErrorKind::kUsage, option + " and --set " + key + " say the same thing: give one");
   }
 }
 

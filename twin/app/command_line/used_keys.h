@@ -14,9 +14,18 @@ const UsedKeys& AllKeys();
 /// That say which tubes lie in which bin, for verbs that read a pile.
 UsedKeys PileKeysAnd(const UsedKeys& more);
 
+/// The whole [bin], for verbs that place it in the cell too.
+UsedKeys BinKeysAnd(const UsedKeys& more);
+
 /// Throws Error(kUsage) naming the first `--set` key that is not used, with the keys that are, and
-/// Error(kConfig) for one that no verb knows. `who`: "tubetwin scan".
+/// Error(kConfig) for one that no verb knows. `who`: "tubetwin scan". A unit of a mesh without the
+/// mesh is not used either.
 void RefuseUnusedKeys(const std::vector<std::string>& overrides, const UsedKeys& used,
                       const std::string& who);
+
+/// Throws Error(kUsage) where an option and a `--set` key say the same thing: one would be lost.
+/// `option`: "--seed"; `same`: the keys that it stands for.
+void RefuseSaidTwice(const std::vector<std::string>& overrides, const std::string& option,
+                     const UsedKeys& same);
 
 }  // namespace tubetwin
