@@ -29,6 +29,10 @@ TEST_CASE("A cell that cannot work is refused before anything is simulated", "[a
   CheckRefused(folder, "pile generate --part pvc_a --count 40 --bin 0.3,0.3,0.05 --out p.json", 78,
                "fill of the bin");
   CheckRefused(folder, "config check --set bin.X_BN=[600,0,100,90]", 78, "millimetres");
+  CheckRefused(folder, "config check --set physics.tube_friction=[0.9,0.1]", 78,
+               "the first number must not be above the second");
+  CheckRefused(folder, "config check --set physics.tube_friction=[0.3]", 78, "none or two");
+  CheckRefused(folder, "part check .", 66, ".: is a folder, a file is needed");
 }
 
 TEST_CASE("A part that no gripper holds is refused with 65", "[app]") {

@@ -58,6 +58,7 @@ PartFitCell PartFitOf(const Scenario& scenario, const CellModel& model) {
 std::vector<Finding> CheckScenario(const Scenario& scenario) {
   const CellModel model = ScenarioModel(scenario);
   const Asked asked(scenario);
+  ScenarioPhysics(scenario, asked.part);  // Throws for a range that no round can draw from.
   return CheckCell({model, asked.bin, asked.part,
                     ScanPoses(scenario.scan, model, asked.bin, asked.part.radius_m), asked.count,
                     scenario.nominal_scanner_pose && !scenario.cell.IsTwin()});
