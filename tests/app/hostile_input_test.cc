@@ -125,8 +125,8 @@ TEST_CASE("No control character of a file reaches the terminal", "[app]") {
   check("pile show named.json", 65, "named.json: part: name is 'a\\x0Ab'; allowed: UTF-8");
   Write(folder, "named.json", WithText(kPile, R"("part": "pvc_a")", R"("part": "a\nb")"));
   check("pile show named.json", 66, "named.json: part: no part is named 'a\\x0Ab'");
-  check("pile show $(printf 'a\\033[2Jb')", 66, "a\\u001b[2Jb: no such file");
-  check("pile show $(printf 'a\\302\\233b')", 66, "a\\u009bb: no such file");
+  check("pile show $(printf 'a\\033[2Jb')", 66, "a\\x1B[2Jb: no such file");
+  check("pile show $(printf 'a\\302\\233b')", 66, "a\\xC2\\x9Bb: no such file");
   check("pile show --json p.json --pa$(printf 'r\\007t')", 64, "");
 }
 
