@@ -71,7 +71,7 @@ std::string Misplaced(const PileTube& tube, const Bin& bin) {
   const auto by_height = [](const Vector3& a, const Vector3& b) { return a.z() < b.z(); };
   const Vector3& bottom = *std::min_element(points_N.begin(), points_N.end(), by_height);
   if (const double over_rim_m = bottom.z() - bin.wall_m(); over_rim_m > kHighest_m) {
-    return "it floats " + Far(over_rim_m) + " over the bin's rim at " + At(bottom) +
+    return "its lowest point is " + Far(over_rim_m) + " over the bin's rim at " + At(bottom) +
            ", more than " + Far(kHighest_m);
   }
   if (in_wall != nullptr) {

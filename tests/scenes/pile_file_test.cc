@@ -262,7 +262,9 @@ TEST_CASE("A tube is in the bin over its floor, over a wall and above it, and no
             "floor or under it at (0.2, 0, -0.01) m, 0.01 m too low"},
            {{0, 0, 0.3}, {0.5, 0, -0.03}, "under it at (0.5, 0, -0.03) m, 0.01 m too low"},
            {{-0.2, 0, 0.02}, {0.42, 0, 0.02}, "inside the bin's wall at (0.4"},
-           {{0, 0, 2.6}, {0.3, 0, 2.7}, "it floats 2.51 m over the bin's rim at (0, 0, 2.6) m"},
+           {{0, 0, 2.6},
+            {0.3, 0, 2.7},
+            "its lowest point is 2.51 m over the bin's rim at (0, 0, 2.6) m"},
            {{0, -0.2, 0.02},
             {0, 0.3, 0.02},
             "wall at (0, 0.3, 0.02) m, 0.01 m beyond its inner face"}}) {
