@@ -226,7 +226,7 @@ Json PartToJson(const Part& part) {
   const auto all_fields = [](Part copy) {
     return WriteJson([&copy](ConfigVisitor& v) { copy.Visit(v); });
   };
-  const Json fields = all_fields(part);
+  Json fields = all_fields(part);
   const std::vector<std::string> shipped = PartNames();
   if (std::find(shipped.begin(), shipped.end(), part.name) != shipped.end() &&
       all_fields(LoadPart(part.name)) == fields) {

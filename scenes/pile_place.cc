@@ -81,20 +81,24 @@ std::string Misplaced(const PileTube& tube, const Bin& bin) {
   return "";
 }
 
+[[noreturn]] void Refuse(const std::string& source, std::size_t index, int id,
+                         const std::string& problem, const Bin& bin) {
+  const auto& size_m = bin.size_m;
+  throw Error(
+      ErrorKind::kBadData,
+      source + ": tubes[" + std::to_string(index) + "] (id " + std::to_string(id) +
+          "): " + problem + "\nallowed: tubes in the bin, " + Number(size_m[0]) + " x " +
+          Number(size_m[1]) + " x " + Number(size_m[2]) +
+          " m, above its floor and clear of its walls (frame: the bin's, from the middle of "
+          "its floor; another bin: --bin)");
+}
+
 }  // namespace
 
 void RequireInBin(const Pile& pile, const std::string& source) {
   for (std::size_t i = 0; i < pile.tubes.size(); ++i) {
     const std::string problem = Misplaced(pile.tubes[i], pile.bin);
-    if (problem.empty()) continue;
-    const auto& size_m = pile.bin.size_m;
-    throw Error(ErrorKind::kBadData,
-                source + ": tubes[" + std::to_string(i) + "] (id " +
-                    std::to_string(pile.tubes[i].id) + "): " + problem +
-                    "\nallowed: tubes in the bin, " + Number(size_m[0]) + " x " +
-                    Number(size_m[1]) + " x " + Number(size_m[2]) +
-                    " m, above its floor and clear of its walls (frame: the bin's, from the "
-                    "middle of its floor; another bin: --bin)");
+    if (!problem.empty()) Refuse(source, i, pile.tubes[i].id, problem, pile.bin);
   }
 }
 

@@ -128,7 +128,7 @@ StepOutcome PutBack(CycleContext& c) {
   c.observer.OnStep("putting back");
   std::optional<StepOutcome> refused;
   for (const Lowering& way : Lowerings(c.cell.bin, IsOverBin(c.cell.bin, c.executor.X_BE()))) {
-    const StepOutcome lowered = c.CheckAndRun(LoweringPath(c, way));
+    StepOutcome lowered = c.CheckAndRun(LoweringPath(c, way));
     if (lowered.ok()) return LetGo(c, c.ReleaseOpening(), kRest_s);
     if (!lowered.refused()) return lowered;
     if (!refused) refused = lowered;
