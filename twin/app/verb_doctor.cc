@@ -16,6 +16,7 @@
 #include "models/base/json.h"
 #include "models/base/text.h"
 #include "scenes/engine/engine_error.h"
+#include "twin/app/arm_to_move.h"
 #include "twin/app/ask.h"
 #include "twin/app/common.h"
 #include "twin/live/activate_gripper.h"
@@ -239,15 +240,8 @@ struct JogVerb {
 };
 
 int RunJog(const JogVerb& verb, const Common& common) {
-  const Scenario scenario = LoadScenario({verb.cell}, common);
-  scenario.cell.ValidateOrThrow();
-  RequireSoundCell(scenario, common);
+  const Scenario scenario = LoadCellToMove(verb.cell, "jog", common);
   const CellConfig::Arm& role = scenario.cell.arm;
-  if (!role.IsDevice()) {
-    throw Error(ErrorKind::kConfig, "cell.arm.driver: is '" + role.driver +
-                                        "', jog moves a device; allowed is a cell file with one");
-  }
-  RequireArmed(scenario);
   const DeviceLock lock(DeviceToOwn("arm", role));
   RequireWord(
       {"jog", "the arm may move",
@@ -261,15 +255,7 @@ int RunJog(const JogVerb& verb, const Common& common) {
   options.stop_requested = StopOnSignals();
   const auto arm = role.Connect(ScenarioContext(scenario, model, clock, CellPurpose::kRun));
   const JointVector q = Jog(*arm, model.arm, clock, options);
-  if (common.json) {
-    Json joints = Json::array();
-    for (const double angle : q) joints.push_back(Degrees(angle));
-    PrintJson(Json{{"joints_deg", joints}});
-    return 0;
-  }
-  Print("joints");
-  for (const double angle : q) Print(" %.3f", Degrees(angle));
-  Print(" degrees\n");
+  PrintJoints(q, common);
   return 0;
 }
 

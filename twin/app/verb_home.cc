@@ -1,15 +1,11 @@
 // Drives the arm to where a round may begin.
 
-#include <cstdio>
-
 #include <CLI/CLI.hpp>
 
 #include "hw_bridge/drivers/device_lock.h"
-#include "models/base/error.h"
-#include "models/base/json.h"
 #include "models/base/text.h"
+#include "twin/app/arm_to_move.h"
 #include "twin/app/ask.h"
-#include "twin/app/command_line/terminal.h"
 #include "twin/app/common.h"
 #include "twin/live/home.h"
 #include "twin/live/live_cell.h"
@@ -23,15 +19,8 @@ struct HomeOptions {
 };
 
 int RunHome(const HomeOptions& home, const Common& common) {
-  const Scenario scenario = LoadScenario({home.cell}, common);
-  scenario.cell.ValidateOrThrow();
-  RequireSoundCell(scenario, common);
+  const Scenario scenario = LoadCellToMove(home.cell, "home", common);
   const CellConfig::Arm& role = scenario.cell.arm;
-  if (!role.IsDevice()) {
-    throw Error(ErrorKind::kConfig, "cell.arm.driver: is '" + role.driver +
-                                        "', home moves a device; allowed is a cell file with one");
-  }
-  RequireArmed(scenario);
   const DeviceLock lock(DeviceToOwn("arm", role));
   const SafetyLimits safety = ScenarioSafety(scenario);
   const std::string speed =
@@ -50,15 +39,7 @@ int RunHome(const HomeOptions& home, const Common& common) {
   Cell cell{look.clock, *arm, look.gripper, look.wrist, look.scanner, look.model, look.bin, safety};
   cell.stop_at_once = StopOnSignals();
   const JointVector q = DriveHome(cell, LoadPart(ScenarioPartName(scenario)).mass_kg);
-  if (common.json) {
-    Json joints = Json::array();
-    for (const double angle : q) joints.push_back(Degrees(angle));
-    PrintJson(Json{{"joints_deg", joints}});
-    return 0;
-  }
-  Print("joints");
-  for (const double angle : q) Print(" %.3f", Degrees(angle));
-  Print(" degrees\n");
+  PrintJoints(q, common);
   return 0;
 }
 
