@@ -31,8 +31,6 @@ constexpr std::size_t kFewestFloorTouches = 3, kFewestWallTouches = 4;
 constexpr double kCorner_m = 0.03;
 constexpr double kTouchSlack_m = 0.01;  ///< A tip is round, a rim is rounded.
 
-constexpr char kBinsPlace[] = "the bin's place", kScannersPose[] = "the scanner's pose";
-
 [[noreturn]] void Refuse(const std::string& why) { throw Error(ErrorKind::kBadData, why); }
 
 /// Of N's z axis against B's.
@@ -336,25 +334,32 @@ std::vector<Matrix3> TurnsOfFlange(const CalibrationInput& input) {
   return out;
 }
 
+/// Solves and judges. `what` is looked for, `remedy` helps where the data tells too little of it.
+Calibration Find(Unknown unknown, const CalibrationInput& input, const std::string& what,
+                 const std::string& remedy, Parallelism parallelism) {
+  const auto points = SurfacePoints(input, parallelism);
+  const PlaneSolver solver(input, points);
+  const Solution solution = BestSolution(solver, input, unknown);
+  RequirePlanes(solution.groups);
+  RequireClearTouches(input, solution.at.X_NB);
+  Calibration out = Told(solver, input, solution, unknown);
+  RequireTold(out, what, remedy);
+  RequireEmptyBin(solver, input, solution.at);
+  RequireSize(input, solution.at);
+  const bool leans = unknown == Unknown::kBinLevel && Worst(solution.found).rms_m > kMaxResidual_m;
+  RequireSmallResidual(solution, leans ? LeanText(solver, input, solution) : "");
+  WidenByResiduals(solution, what, out);
+  return out;
+}
+
 }  // namespace
 
 Calibration CalibrateBin(const CalibrationInput& input, Parallelism parallelism) {
   if (input.views.empty() && input.touches.empty()) Refuse("there is neither a view nor a touch");
   RequireTouches(input);
-  const auto points = SurfacePoints(input, parallelism);
-  const PlaneSolver solver(input, points);
-  const Solution solution = BestSolution(solver, input, Unknown::kBinLevel);
-  RequirePlanes(solution.groups);
-  RequireClearTouches(input, solution.at.X_NB);
-  Calibration out = Told(solver, input, solution, Unknown::kBinLevel);
-  RequireTold(out, kBinsPlace,
-              "touch floor and walls further apart, or add views that show more of the walls");
-  RequireEmptyBin(solver, input, solution.at);
-  RequireSize(input, solution.at);
-  const bool off = Worst(solution.found).rms_m > kMaxResidual_m;
-  RequireSmallResidual(solution, off ? LeanText(solver, input, solution) : "");
-  WidenByResiduals(solution, kBinsPlace, out);
-  return out;
+  return Find(Unknown::kBinLevel, input, "the bin's place",
+              "touch floor and walls further apart, or add views that show more of the walls",
+              parallelism);
 }
 
 Calibration CalibrateHandEye(const CalibrationInput& input, Parallelism parallelism) {
@@ -368,21 +373,11 @@ Calibration CalibrateHandEye(const CalibrationInput& input, Parallelism parallel
   const std::string lack =
       input.touches.empty() ? WhatPosesLack(TurnsOfFlange(input)) : std::string();
   if (!lack.empty()) Refuse(lack);
-  const auto points = SurfacePoints(input, parallelism);
-  const PlaneSolver solver(input, points);
-  const Solution solution = BestSolution(solver, input, Unknown::kScanner);
-  RequirePlanes(solution.groups);
-  RequireClearTouches(input, solution.at.X_NB);
-  Calibration out = Told(solver, input, solution, Unknown::kScanner);
-  RequireTold(out, kScannersPose,
+  return Find(Unknown::kScanner, input, "the scanner's pose",
               input.on_stand
                   ? "the scanner must see the floor and two walls that meet"
-                  : "add views turned and tilted otherwise, into several corners of the bin");
-  RequireEmptyBin(solver, input, solution.at);
-  RequireSize(input, solution.at);
-  RequireSmallResidual(solution, "");
-  WidenByResiduals(solution, kScannersPose, out);
-  return out;
+                  : "add views turned and tilted otherwise, into several corners of the bin",
+              parallelism);
 }
 
 }  // namespace tubetwin
