@@ -27,11 +27,6 @@ std::array<double, N> NotGiven() {
 
 Vector3 ToVector(const Point& p) { return {p[0], p[1], p[2]}; }
 
-RigidTransform ToPose(const Pose7& x, const std::string& what) {
-  return MakeTransform(UnitRotation({x[3], x[4], x[5], x[6]}, what + ": the quaternion"),
-                       Vector3(x[0], x[1], x[2]));
-}
-
 RigidTransform ToPose(const Pose4& x) {
   return MakeTransform(RotZ(Radians(x[3])), Vector3(x[0], x[1], x[2]));
 }
@@ -39,9 +34,9 @@ RigidTransform ToPose(const Pose4& x) {
 struct ToolEntry {
   Pose7 X_FK = NotGiven<7>(), X_FE = NotGiven<7>();
   void Visit(ConfigVisitor& v) {
-    v.Field("X_FK", "the sensor's tool face on the flange: x y z in metres, quaternion w x y z",
-            X_FK, kPlace);
-    v.Field("X_FE", "the middle between the closed pads on the flange, likewise", X_FE, kPlace);
+    v.Pose("X_FK", "the sensor's tool face on the flange: x y z in metres, quaternion w x y z",
+           X_FK, kPlace);
+    v.Pose("X_FE", "the middle between the closed pads on the flange, likewise", X_FE, kPlace);
   }
 };
 
@@ -50,11 +45,13 @@ struct MountEntry {
   std::vector<double> X_FS, X_BS, p_BClear;
   void Visit(ConfigVisitor& v) {
     v.Choice("on", "what the scanner hangs on", on, {"flange", "stand"});
-    v.Field("X_FS", "on the flange: the camera on the flange, x y z in metres, quaternion w x y z",
-            X_FS, 0, kPlace);
-    v.Field("X_BS", "on a stand: the camera in the base, likewise", X_BS, 0, kPlace);
-    v.Field("p_BClear", "on a stand: the pads while it looks, x y z, the tool pointing down",
-            p_BClear, 0, kPlace);
+    v.PoseOrNone("X_FS",
+                 "on the flange: the camera on the flange, x y z in metres, quaternion w x y z",
+                 X_FS, kPlace);
+    v.PoseOrNone("X_BS", "on a stand: the camera in the base, likewise", X_BS, kPlace);
+    v.NumbersOrNone("p_BClear",
+                    "on a stand: the pads while it looks, x y z, the tool pointing down", p_BClear,
+                    3, kPlace);
   }
 };
 
@@ -162,19 +159,17 @@ struct KeepOutEntry {
 struct ScanPoseEntry {
   Pose7 X_BS = NotGiven<7>();
   void Visit(ConfigVisitor& v) {
-    v.Field("X_BS", "the camera in the base: x y z in metres, quaternion w x y z", X_BS, kPlace);
+    v.Pose("X_BS", "the camera in the base: x y z in metres, quaternion w x y z", X_BS, kPlace);
   }
 };
 
-Pose7 PoseOf(const std::vector<double>& list, const std::string& path, const char* key,
-             const std::string& when) {
-  if (list.size() != 7) {
-    RefuseFile(path, std::string("scanner_mount.") + key + " has " + std::to_string(list.size()) +
-                         " numbers; " + when + " seven are needed: x y z, quaternion w x y z");
+RigidTransform PoseOf(const std::vector<double>& list, const std::string& path, const char* key,
+                      const std::string& when) {
+  if (list.empty()) {
+    RefuseFile(path, std::string("scanner_mount.") + key + " is missing; " + when +
+                         " it is needed: x y z, quaternion w x y z");
   }
-  Pose7 out;
-  std::copy(list.begin(), list.end(), out.begin());
-  return out;
+  return PoseOfNumbers(list);
 }
 
 void SetMount(const MountEntry& entry, const std::string& path, CellLayout& layout) {
@@ -183,16 +178,17 @@ void SetMount(const MountEntry& entry, const std::string& path, CellLayout& layo
       RefuseFile(path, "scanner_mount.X_BS and p_BClear are for a stand; on is \"flange\"");
     }
     layout.scanner_mount = CellLayout::ScannerMount::kFlange;
-    layout.X_FS = ToPose(PoseOf(entry.X_FS, path, "X_FS", "on the flange"), path + ": X_FS");
+    layout.X_FS = PoseOf(entry.X_FS, path, "X_FS", "on the flange");
     return;
   }
   if (!entry.X_FS.empty())
     RefuseFile(path, "scanner_mount.X_FS is for the flange; on is \"stand\"");
   layout.scanner_mount = CellLayout::ScannerMount::kStand;
-  layout.X_BS = ToPose(PoseOf(entry.X_BS, path, "X_BS", "on a stand"), path + ": X_BS");
-  if (entry.p_BClear.size() != 3) {
-    RefuseFile(path, "scanner_mount.p_BClear has " + std::to_string(entry.p_BClear.size()) +
-                         " numbers; on a stand three are needed: x y z of the pads while it looks");
+  layout.X_BS = PoseOf(entry.X_BS, path, "X_BS", "on a stand");
+  if (entry.p_BClear.empty()) {
+    RefuseFile(path,
+               "scanner_mount.p_BClear is missing; on a stand it is needed: x y z of the "
+               "pads while it looks");
   }
   layout.p_BClear = {entry.p_BClear[0], entry.p_BClear[1], entry.p_BClear[2]};
 }
@@ -217,7 +213,7 @@ void SetScan(const ScanEntry& entry, const std::vector<ConfigSource>& poses,
     ScanPoseEntry pose;
     source.ReadInto(pose);
     RequireGiven([&](ConfigVisitor& v) { pose.Visit(v); }, path + ": [[scan_pose]]");
-    layout.scan_poses_BS.push_back(ToPose(pose.X_BS, path + ": [[scan_pose]] X_BS"));
+    layout.scan_poses_BS.push_back(PoseOfNumbers(pose.X_BS));
   }
 }
 
@@ -232,8 +228,8 @@ CellLayout::KeepOut ReadKeepOut(const ConfigSource& source, const std::string& p
 CellLayout LayoutOf(const CellEntry& entry, const std::vector<ConfigSource>& scan_poses,
                     const std::vector<ConfigSource>& keep_out, const std::string& path) {
   CellLayout layout;
-  layout.X_FK = ToPose(entry.tool.X_FK, path + ": tool.X_FK");
-  layout.X_FE = ToPose(entry.tool.X_FE, path + ": tool.X_FE");
+  layout.X_FK = PoseOfNumbers(entry.tool.X_FK);
+  layout.X_FE = PoseOfNumbers(entry.tool.X_FE);
   SetMount(entry.mount, path, layout);
   SetScan(entry.scan, scan_poses, path, layout);
   layout.bin_size_m = entry.bin.size_m;

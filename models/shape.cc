@@ -61,17 +61,6 @@ Vector3 HalfExtent(const Shape& shape) {
   return {s.x(), s.x(), s.x()};
 }
 
-Matrix3 UnitRotation(const std::array<double, 4>& wxyz, const std::string& what) {
-  constexpr double kUnit = 1e-3;  // as many digits as people write
-  const double norm = Eigen::Map<const Eigen::Vector4d>(wxyz.data()).norm();
-  if (!(std::abs(norm - 1.0) < kUnit)) {
-    throw Error(ErrorKind::kConfig, what + " has length " + Number(norm) +
-                                        "; a quaternion w x y z of length 1 is needed, as in "
-                                        "[1, 0, 0, 0]");
-  }
-  return RotationFromWxyz(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-}
-
 Matrix3 RotationFromRpy(const std::array<double, 3>& rpy_deg) {
   return RotZ(Radians(rpy_deg[2])) * RotY(Radians(rpy_deg[1])) * RotX(Radians(rpy_deg[0]));
 }

@@ -28,9 +28,12 @@ inline constexpr int kFlangeBody = 7;
 /// Half sizes of the box around a shape, in its own axes.
 Vector3 HalfExtent(const Shape& shape);
 
-/// The rotation of a quaternion w x y z. Throws Error(kConfig) naming `what` when its length is not
-/// 1 (within 0.001).
-Matrix3 UnitRotation(const std::array<double, 4>& wxyz, const std::string& what);
+/// The pose of x y z and a quaternion w x y z, which ConfigVisitor::Pose has checked.
+template <class Numbers>
+RigidTransform PoseOfNumbers(const Numbers& xyz_wxyz) {
+  const auto& x = xyz_wxyz;
+  return MakeTransform(RotationFromWxyz(x[3], x[4], x[5], x[6]), Vector3(x[0], x[1], x[2]));
+}
 
 /// About x, then y, then z of the fixed frame: URDF's rpy.
 Matrix3 RotationFromRpy(const std::array<double, 3>& rpy_deg);

@@ -49,6 +49,45 @@ std::string Refusal(const std::function<void()>& call) {
   return "nothing was refused";
 }
 
+TEST_CASE("a misspelt table that is taken apart is told the name of the right one") {
+  ConfigSource source;
+  source.AddText("[[vieww]]\n", "views.toml");
+  CHECK(source.TakeTables("view").empty());
+  source.TakeTables("touch");
+  CHECK_THROWS_WITH(source.Read([](ConfigVisitor&) {}),
+                    "views.toml:1:3: vieww: unknown key; the nearest known is 'view'");
+}
+
+TEST_CASE("a quaternion that is none is told where it stands") {
+  struct Places {
+    std::vector<double> X_FS;
+    std::array<double, 7> X_FK{0, 0, 0, 1, 0, 0, 0};
+    void Visit(ConfigVisitor& v) {
+      v.PoseOrNone("X_FS", "one or none", X_FS);
+      v.Pose("X_FK", "one", X_FK);
+    }
+  };
+  const auto error = [](const std::string& toml) {
+    ConfigSource source;
+    source.AddText(toml, "c.toml");
+    Places places;
+    try {
+      source.ReadInto(places);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  CHECK(error("") == "");
+  CHECK(error("X_FS = []\nX_FK = [1, 2, 3, 0.7071, 0.7071, 0, 0]") == "");
+  const std::string needed = "; a quaternion w x y z of length 1 is needed, as in [1, 0, 0, 0]";
+  CHECK(error("\nX_FS = [0, 0, 1, 2, 0, 0, 0]") ==
+        "c.toml:2:8: X_FS: its quaternion has length 2" + needed);
+  CHECK(error("X_FK = [0, 0, 1, 0, 0, 0, 0]") ==
+        "c.toml:1:8: X_FK: its quaternion has length 0" + needed);
+  CHECK(error("X_FK = []").starts_with("c.toml:1:8: X_FK: 7 numbers are needed"));
+}
+
 }  // namespace
 
 TEST_CASE("tables of a list become sources of their own and leave the rest") {

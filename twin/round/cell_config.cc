@@ -17,8 +17,6 @@ std::vector<std::string> MeshUnitChoices() {
   return units;
 }
 
-constexpr int kPoseNumbers = 7;  // x y z, quaternion w x y z
-
 /// Calls `see` with each of the four roles.
 template <class See>
 void ForEachRole(const CellConfig& cell, See see) {
@@ -102,23 +100,18 @@ void CellConfig::ValidateOrThrow() const {
 }
 
 void CalibrationConfig::Visit(ConfigVisitor& v) {
-  v.NumbersOrNone("X_FK",
-                  "the sensor's tool face on the flange: x y z in metres, quaternion w x y z; "
-                  "empty: the cell model's",
-                  X_FK, kPoseNumbers);
-  v.NumbersOrNone("X_FE", "the middle between the closed pads on the flange, likewise", X_FE,
-                  kPoseNumbers);
-  v.NumbersOrNone("X_FS", "the camera of a scanner on the flange, likewise", X_FS, kPoseNumbers);
-  v.NumbersOrNone("X_BS", "the camera of a scanner on a stand in the robot's base, likewise", X_BS,
-                  kPoseNumbers);
+  v.PoseOrNone("X_FK",
+               "the sensor's tool face on the flange: x y z in metres, quaternion w x y z; "
+               "empty: the cell model's",
+               X_FK);
+  v.PoseOrNone("X_FE", "the middle between the closed pads on the flange, likewise", X_FE);
+  v.PoseOrNone("X_FS", "the camera of a scanner on the flange, likewise", X_FS);
+  v.PoseOrNone("X_BS", "the camera of a scanner on a stand in the robot's base, likewise", X_BS);
 }
 
 void CalibrationConfig::ApplyTo(CellLayout& layout) const {
-  const auto set = [](const char* key, const std::vector<double>& x, RigidTransform& pose) {
-    if (x.empty()) return;
-    pose = MakeTransform(UnitRotation({x[3], x[4], x[5], x[6]},
-                                      std::string("calibration.") + key + ": the quaternion"),
-                         Vector3(x[0], x[1], x[2]));
+  const auto set = [](const std::vector<double>& x, RigidTransform& pose) {
+    if (!x.empty()) pose = PoseOfNumbers(x);
   };
   const bool flange = layout.scanner_mount == CellLayout::ScannerMount::kFlange;
   if (!(flange ? X_BS : X_FS).empty()) {
@@ -128,10 +121,10 @@ void CalibrationConfig::ApplyTo(CellLayout& layout) const {
                        : "calibration.X_FS: is given, but the cell model's scanner is on a stand; "
                          "its pose is X_BS");
   }
-  set("X_FK", X_FK, layout.X_FK);
-  set("X_FE", X_FE, layout.X_FE);
-  set("X_FS", X_FS, layout.X_FS);
-  set("X_BS", X_BS, layout.X_BS);
+  set(X_FK, layout.X_FK);
+  set(X_FE, layout.X_FE);
+  set(X_FS, layout.X_FS);
+  set(X_BS, layout.X_BS);
 }
 
 }  // namespace tubetwin

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <utility>
 
+#include <Eigen/Core>
+
 #include "models/base/config/config_entries.h"
 #include "models/base/config/config_layers.h"
 #include "models/base/error.h"
@@ -40,8 +42,9 @@ void FindKey(const Entry& entry, const std::string& key, const std::string& path
   }
 }
 
+/// `taken`: keys of the top level that are read elsewhere.
 void CheckKeysKnown(const Node::Table& table, const Entry& entry, const Entry& root,
-                    const std::string& path) {
+                    const std::string& path, const std::vector<std::string>& taken = {}) {
   for (const Node::Member& member : table) {
     const std::string& key = member.key;
     const Node& node = member.node;
@@ -53,8 +56,8 @@ void CheckKeysKnown(const Node::Table& table, const Entry& entry, const Entry& r
       std::string hint;
       if (!elsewhere.empty()) {
         hint = "; there is '" + Join(elsewhere, "', '") + "'";
-      } else if (!entry.children.empty()) {
-        std::vector<std::string> names;
+      } else if (!entry.children.empty() || !taken.empty()) {
+        std::vector<std::string> names = taken;
         for (const Entry& child : entry.children) names.push_back(child.key);
         hint = "; the nearest known is '" + Below(path, NearestName(key, names)) + "'";
       }
@@ -227,6 +230,18 @@ class Reader : public ConfigVisitor {
     visit(inner);
   }
 
+ protected:
+  void CheckPose(const char* key, const std::vector<double>& xyz_wxyz) override {
+    const Node* node = Get(key);
+    if (node == nullptr || xyz_wxyz.empty()) return;
+    constexpr double kUnit = 1e-3;  // as many digits as people write
+    const double norm = Eigen::Map<const Eigen::Vector4d>(&xyz_wxyz[3]).norm();
+    if (std::abs(norm - 1.0) < kUnit) return;
+    Fail(node->place, Path(key),
+         "its quaternion has length " + Number(norm) +
+             "; a quaternion w x y z of length 1 is needed, as in [1, 0, 0, 0]");
+  }
+
  private:
   const Node* Get(const char* key) const { return table_ ? Find(*table_, key) : nullptr; }
   std::string Path(const char* key) const { return Below(path_, key); }
@@ -258,7 +273,7 @@ void ConfigSource::AddOverride(const std::string& text) {
 
 void ConfigSource::Read(const std::function<void(ConfigVisitor&)>& visit) const {
   const Entry known = DescribeFields(visit);
-  CheckKeysKnown(impl_->layers, known, known, "");
+  CheckKeysKnown(impl_->layers, known, known, "", impl_->taken);
   Reader reader(&impl_->layers, "");
   visit(reader);
 }

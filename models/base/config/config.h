@@ -40,6 +40,17 @@ class ConfigVisitor {
                              int /*count*/, Range allowed = {}) {
     Field(key, doc, value, 0, allowed);
   }
+  /// Seven numbers, x y z and a quaternion w x y z of length 1 (within 0.001), or none.
+  void PoseOrNone(const char* key, const char* doc, std::vector<double>& value,
+                  Range allowed = {}) {
+    NumbersOrNone(key, doc, value, 7, allowed);
+    CheckPose(key, value);
+  }
+  /// The same seven, where none is no pose.
+  void Pose(const char* key, const char* doc, std::array<double, 7>& value, Range allowed = {}) {
+    Field(key, doc, value, allowed);
+    CheckPose(key, {value.begin(), value.end()});
+  }
   /// The name of a file. One that is relative in a file is relative to that file's folder, one of
   /// an override to the working directory; what is read is relative to the working directory.
   virtual void File(const char* key, const char* doc, std::string& value) {
@@ -75,6 +86,10 @@ class ConfigVisitor {
     Section(key, doc,
             std::function<void(ConfigVisitor&)>([&config](ConfigVisitor& v) { config.Visit(v); }));
   }
+
+ protected:
+  /// For readers, which know where the numbers stand.
+  virtual void CheckPose(const char* /*key*/, const std::vector<double>& /*xyz_wxyz*/) {}
 };
 
 /// TOML layers: files, then `a.b=value` texts, each overriding the ones before.

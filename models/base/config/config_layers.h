@@ -64,6 +64,7 @@ namespace tubetwin {
 struct ConfigSource::Impl {
   config_internal::Node::Table layers;  ///< Merged so far.
   std::string place;                    ///< Of the first layer, or of the table it was taken from.
+  std::vector<std::string> taken;       ///< Keys that TakeTable and TakeTables were asked for.
 };
 
 }  // namespace tubetwin

@@ -123,6 +123,7 @@ void FindAxes(const Node::Table& table, const Entry& section, const std::string&
 
 std::vector<ConfigSource> ConfigSource::TakeTables(const std::string& key) {
   std::vector<ConfigSource> out;
+  impl_->taken.push_back(key);
   if (Find(impl_->layers, key) == nullptr) return out;
   Node node = Take(impl_->layers, key);
   auto* list = std::get_if<std::vector<Node>>(&node.value);
@@ -141,6 +142,7 @@ std::vector<ConfigSource> ConfigSource::TakeTables(const std::string& key) {
 
 ConfigSource ConfigSource::TakeTable(const std::string& key) {
   ConfigSource out;
+  impl_->taken.push_back(key);
   if (Find(impl_->layers, key) == nullptr) return out;
   Node node = Take(impl_->layers, key);
   out.impl_->place = node.place;

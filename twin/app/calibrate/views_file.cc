@@ -23,10 +23,9 @@ struct ViewEntry {
     v.File("cloud", "organised cloud of the empty bin (PCD or PLY)", cloud);
     v.NumbersOrNone("joints_deg", "the arm's joints when it was taken, degrees", joints_deg,
                     kNumJoints, {-720.0, 720.0});
-    v.NumbersOrNone("X_BF",
-                    "in place of joints: the flange in the base, x y z in metres, quaternion w x y "
-                    "z",
-                    X_BF, 7, kPlace_m);
+    v.PoseOrNone("X_BF",
+                 "in place of joints: the flange in the base, x y z in metres, quaternion w x y z",
+                 X_BF, kPlace_m);
   }
 };
 
@@ -55,12 +54,7 @@ RigidTransform FlangeOf(const ViewEntry& entry, const ConfigSource& source, cons
                                                 : "both joints_deg and X_BF are") +
                             " given, one of them is needed: where the arm was for that cloud");
   }
-  if (!entry.X_BF.empty()) {
-    const std::vector<double>& x = entry.X_BF;
-    return MakeTransform(
-        UnitRotation({x[3], x[4], x[5], x[6]}, source.PlaceOf("X_BF") + ": X_BF: the quaternion"),
-        Vector3(x[0], x[1], x[2]));
-  }
+  if (!entry.X_BF.empty()) return PoseOfNumbers(entry.X_BF);
   JointVector q;
   for (int i = 0; i < kNumJoints; ++i) {
     const ArmModel::Joint& joint = arm.joints[static_cast<std::size_t>(i)];
