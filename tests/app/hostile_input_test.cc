@@ -69,7 +69,7 @@ TEST_CASE("A configuration nested thousands deep ends with 78 in every verb", "[
 TEST_CASE("JSON nested thousands deep ends with 65 in every verb", "[app]") {
   const TemporaryFolder folder;
   Write(folder, "deep.json", std::string(100000, '['));
-  for (const std::string& verb :
+  for (const std::string verb :
        {"pile show deep.json", "pile import deep.json --out o.json", "plan deep.json --out o.json",
         "render deep.json --out o.png", "run --pile deep.json --out o"}) {
     CheckRefused(folder, verb, 65, "deep.json: byte 65: lists and objects nest more than 64 deep");
@@ -81,7 +81,7 @@ TEST_CASE("Numbers of a tubes.json outside of their range end with 65, at once",
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& from, const std::string& to, const char* said) {
     Write(folder, "t.json", WithText(kTubes, from, to));
-    for (const std::string& verb : {"plan t.json --out o.json", "render t.json --out o.png"}) {
+    for (const std::string verb : {"plan t.json --out o.json", "render t.json --out o.png"}) {
       CheckRefused(folder, verb, 65, said);
     }
   };
@@ -160,10 +160,9 @@ TEST_CASE("A campaign too large to be run is refused before it takes memory", "[
 TEST_CASE("A pipe or device in place of a file ends with 66, at once", "[app]") {
   const TemporaryFolder folder;
   REQUIRE(::mkfifo((folder.path() + "/pipe").c_str(), 0600) == 0);
-  for (const std::string& verb :
-       {"config check pipe", "pile show pipe", "campaign run pipe --out o",
-        "run --pile pipe --out o", "emulate --faults pipe --out o", "render pipe --out o.png",
-        "pile show /dev/zero"}) {
+  for (const std::string verb : {"config check pipe", "pile show pipe", "campaign run pipe --out o",
+                                 "run --pile pipe --out o", "emulate --faults pipe --out o",
+                                 "render pipe --out o.png", "pile show /dev/zero"}) {
     CheckRefused(folder, verb, 66, "is a device, pipe or socket", "timeout 20 ");
   }
 }
@@ -281,12 +280,21 @@ TEST_CASE("Keys that make a pile or its scan change it", "[app]") {
   }
 }
 
-TEST_CASE("A seed that is given twice is refused", "[app]") {
+TEST_CASE("What an option and a key say at once is refused", "[app]") {
   const TemporaryFolder folder;
   for (const char* verb : {"run --out o", "campaign run c.toml --out o", "config dump"}) {
     CheckRefused(folder, std::string(verb) + " --seed 1 --set seed=3", 64,
                  "--seed and --set seed say the same thing: give one");
   }
+  const auto refused = [&](const std::string& arguments, const std::string& both) {
+    CheckRefused(folder, arguments, 64, both + " say the same thing: give one");
+  };
+  refused("run --out o --part pvc_a --set pile.part=hose_b", "--part and --set pile.part");
+  refused("run --out o --pile p.json --set pile.file=q.json", "--pile and --set pile.file");
+  refused("pile show p.json --part pvc_a --set part.name=hose_b", "--part and --set part.name");
+  refused("scan p.json --out o --bin 1,1,1 --set bin.size_m=[2,2,2]", "--bin and --set bin.size_m");
+  refused("perceive c.pcd --part pvc_a --out o --profile best --set profile=leao2020",
+          "--profile and --set profile");
 }
 
 TEST_CASE("Every verb that reads or makes a pile takes the bin's size from a key", "[app]") {
@@ -306,8 +314,8 @@ TEST_CASE("Every verb that reads or makes a pile takes the bin's size from a key
   REQUIRE(shown.code == 0);
   CHECK(Json::parse(shown.out)["bin"]["size_m"] == asked);
   // In a bin too short for it the tube runs through a wall, for every verb.
-  for (const std::string& verb : {"scan p.json --out o", "evaluate p.json --out o.json",
-                                  "render p.json --out o.png", "pile import p.json --out o.json"}) {
+  for (const std::string verb : {"scan p.json --out o", "evaluate p.json --out o.json",
+                                 "render p.json --out o.png", "pile import p.json --out o.json"}) {
     CheckRefused(folder, verb + " --set bin.size_m=[0.45,0.4,0.1]", 65, "inside the bin's wall");
   }
 }

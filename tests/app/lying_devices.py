@@ -158,6 +158,10 @@ def a_faulty_gripper_that_holds_is_not_activated(folder):
     began_s = now_s(emulation)
     code, err = Run(PROGRAM, emulation.cell, folder + "/second").wait(60)
     check(code == 69 and "may hold something" in err, f"the next one does not activate it: {code} {err}")
+    activated = subprocess.run([PROGRAM, "doctor", "--activate-gripper", "--yes", "--cell", emulation.cell],
+                               capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL)
+    check(activated.returncode == 69 and "take it out" in activated.stderr,
+          f"nor when asked to: {activated.returncode} {activated.stderr}")
     check("open" not in events_since(emulation, began_s), "nothing opens")
     emulation.stop()
     check(len(emulation.world()["held_ids"]) == 1, f"it is held still: {emulation.world()}")

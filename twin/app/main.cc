@@ -67,7 +67,7 @@ int Run(int argc, char** argv) {
     return refuse(why.empty() ? e.what() : why);
   }
   RefuseUnusedKeys(common.overrides, common.used_keys, common.verb);
-  if (common.seed) RefuseSaidTwice(common.overrides, "--seed", {"seed"});
+  RefuseSaidTwice(*VerbOf(app, words).verb, common.overrides);
   try {
     return common.action();
   } catch (const Error& error) {

@@ -74,6 +74,11 @@ Seen ReadScene(const CloudInput& input, const Scenario& scenario, const Common& 
                                           : BinKeysAnd({})),
                   "of tubes.json");
   seen.bin = ScenarioBin(scenario, std::nullopt);
+  if (!has_bin && input.bin.empty()) {
+    const auto& size_m = seen.bin.size_m;
+    Say(common, file + ": names no bin; planned in the cell's, " + Number(size_m[0]) + " x " +
+                    Number(size_m[1]) + " x " + Number(size_m[2]) + " m");
+  }
   if (has_bin) {
     const std::optional<std::array<double, 3>> asked_m = AskedOverrides(scenario).bin_size_m;
     seen.bin = BinFromJson(document.Field("bin"));
@@ -152,6 +157,10 @@ int Plan(const CloudInput& input, const Common& common) {
   Json out = ToJson(result);
   out["chosen"] = chosen ? Json(chosen->index) : Json(nullptr);
   out["nudge"] = ToJson(nudge.nudge);
+  if (nudge.nudge) {
+    out["nudge"]["max_press_N"] = scenario.planner.nudge_press_N;
+    out["nudge"]["max_force_N"] = scenario.planner.nudge_force_N;
+  }
   WriteJsonFile(out, common.out);
   Report(result, chosen, nudge.nudge);
   return 0;

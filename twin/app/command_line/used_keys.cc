@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <CLI/CLI.hpp>
+
 #include "models/base/error.h"
 #include "models/base/text.h"
 #include "twin/round/scenario.h"
@@ -65,12 +67,21 @@ void RefuseUnusedKeys(const std::vector<std::string>& overrides, const UsedKeys&
   }
 }
 
-void RefuseSaidTwice(const std::vector<std::string>& overrides, const std::string& option,
-                     const UsedKeys& same) {
-  for (const std::string& text : overrides) {
-    const std::string key = KeyOfOverride(text);
-    if (std::count(same.begin(), same.end(), key) == 0) continue;
-    throw Error(ErrorKind::kUsage, option + " and --set " + key + " say the same thing: give one");
+void RefuseSaidTwice(const CLI::App& verb, const std::vector<std::string>& overrides) {
+  struct Same {
+    const char *option, *key;
+  };
+  constexpr Same kSame[] = {{"--seed", "seed"},       {"--part", "pile.part"},
+                            {"--part", "part.name"},  {"--bin", "bin.size_m"},
+                            {"--profile", "profile"}, {"--pile", "pile.file"}};
+  for (const auto& [name, same] : kSame) {
+    const CLI::Option* option = verb.get_option_no_throw(name);
+    if (option == nullptr || option->count() == 0) continue;
+    for (const std::string& text : overrides) {
+      if (KeyOfOverride(text) != same) continue;
+      throw Error(ErrorKind::kUsage,
+                  std::string(name) + " and --set " + same + " say the same thing: give one");
+    }
   }
 }
 

@@ -3,6 +3,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace tubetwin {
 
 /// Which configuration keys a verb uses: whole keys ("bin.size_m") or families ("scan" is all of
@@ -23,9 +27,8 @@ UsedKeys BinKeysAnd(const UsedKeys& more);
 void RefuseUnusedKeys(const std::vector<std::string>& overrides, const UsedKeys& used,
                       const std::string& who);
 
-/// Throws Error(kUsage) where an option and a `--set` key say the same thing: one would be lost.
-/// `option`: "--seed"; `same`: the keys that it stands for.
-void RefuseSaidTwice(const std::vector<std::string>& overrides, const std::string& option,
-                     const UsedKeys& same);
+/// Throws Error(kUsage) where an option that `verb` was given and a `--set` key say the same thing:
+/// one would be lost.
+void RefuseSaidTwice(const CLI::App& verb, const std::vector<std::string>& overrides);
 
 }  // namespace tubetwin
