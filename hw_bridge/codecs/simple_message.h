@@ -247,9 +247,9 @@ struct Message {
   Body body;
   bool operator==(const Message&) const = default;
 };
-inline Message Topic(Body body) { return {Comm::kTopic, ReplyCode::kInvalid, std::move(body)}; }
-inline Message Request(Body body) { return {Comm::kRequest, ReplyCode::kInvalid, std::move(body)}; }
-inline Message Reply(Body body) { return {Comm::kReply, ReplyCode::kSuccess, std::move(body)}; }
+inline Message Topic(const Body& body) { return {Comm::kTopic, ReplyCode::kInvalid, body}; }
+inline Message Request(const Body& body) { return {Comm::kRequest, ReplyCode::kInvalid, body}; }
+inline Message Reply(const Body& body) { return {Comm::kReply, ReplyCode::kSuccess, body}; }
 
 /// The message with its length before it.
 std::string Encode(const Message& message);

@@ -242,8 +242,8 @@ TEST_CASE("More tubes than can be left are what an old view still shows: all is 
   // A tube that was hidden comes to light where the first one was taken.
   round.notes.on_attempt_end = [&] {
     if (round.notes.attempts.size() == 1) {
-      world.tubes.push_back({FakeTube::Place::kBin, Across(-0.25), {}});
-      world.tubes.push_back({FakeTube::Place::kBin, Across(-0.32), {}});
+      world.tubes.push_back({FakeTube::Place::kBin, Across(-0.25), {}, {}});
+      world.tubes.push_back({FakeTube::Place::kBin, Across(-0.32), {}, {}});
     }
   };
   std::vector<int> scans;

@@ -87,7 +87,7 @@ FakeWorld::FakeWorld(const std::vector<Polyline>& tubes_N, const Bin& bin, const
     : part(p) {
   cell.bin = bin;
   for (const Polyline& line_N : tubes_N) {
-    tubes.push_back({FakeTube::Place::kBin, line_N, {}});
+    tubes.push_back({FakeTube::Place::kBin, line_N, {}, {}});
   }
   const RigidTransform X_BE =
       bin.X_BN * MakeTransform(RotX(kPi), Vector3(0, 0, model.layout.carry_height_m));

@@ -122,11 +122,10 @@ Answer HsesResponder::AnswerTo(const Request& request) {
   answer.service = request.service & 0x7f;
   const std::uint16_t command = request.command;
   const bool move = command == hses::kMoveCartesian || command == hses::kMovePulse;
-  if (command >= hses::kAlarm && command <= hses::kTorque) {
-    Read(request, answer);
-  } else if (command == hses::kManagementTime || command == hses::kSystemInfo) {
-    Read(request, answer);
-  } else if (command == hses::kAlarmTexts || command == hses::kAlarmHistoryTexts) {
+  const bool reads = (command >= hses::kAlarm && command <= hses::kTorque) ||
+                     command == hses::kManagementTime || command == hses::kSystemInfo ||
+                     command == hses::kAlarmTexts || command == hses::kAlarmHistoryTexts;
+  if (reads) {
     Read(request, answer);
   } else if ((command >= hses::kIoByte && command <= hses::kVariableEx) ||
              command == hses::kVariableS32) {
