@@ -101,10 +101,6 @@ Weighing Weigh(CycleContext& c, double max_s) {
   Weighing out;
   out.detection = DetectHeld(c.reference_K, now.mean_K, c.setup.part.mass_kg, Tolerance_N(c));
   out.detection.at_s = Seconds(c.cell.clock.Now() - c.attempt_began);
-  if (out.detection.force_N < -kImpossible_N) {
-    out.step = Disbelieved("wrist: the fingers weigh " + Newtons(-out.detection.force_N) +
-                           " less than when they were empty");
-  }
   return out;
 }
 
@@ -114,7 +110,10 @@ Weighing WeighHeld(CycleContext& c, double max_s, const Detection* before) {
   const double force_N = out.detection.force_N;
   const double all_N =
       (c.report.tubes_in_bin + kUnseenTubes) * c.setup.part.mass_kg * kGravity + kImpossible_N;
-  if (force_N > all_N) {
+  if (force_N < -kImpossible_N) {
+    out.step = Disbelieved("wrist: the fingers weigh " + Newtons(-force_N) +
+                           " less than when they were empty");
+  } else if (force_N > all_N) {
     out.step = Disbelieved("wrist: the fingers hold " + Newtons(force_N) + ", at most " +
                            Newtons(all_N) + " were in the bin");
   } else if (before != nullptr && force_N > before->force_N + kImpossible_N) {

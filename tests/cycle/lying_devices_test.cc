@@ -237,6 +237,19 @@ TEST_CASE("The fingers let go only where arm and gripper say that a tube is held
   CheckFault(nothing, "the gripper holds nothing", 1);
 }
 
+TEST_CASE("A hose that others hold down may push up on the fingers while it is drawn out",
+          "[unit]") {
+  FakeWorld world(TwoTubes());
+  world.During(MotionKind::kLift, 1,
+               [&] { world.wrist.lie = [](WrenchSample& s) { s.wrench_K.force_N.z() -= 5.0; }; });
+  world.During(MotionKind::kLift, 2, [&] { world.wrist.lie = {}; });
+  FakeRound round(world);
+  round.Run();
+  INFO(round.attempts_text());
+  CHECK(round.end() == "empty");
+  CHECK(world.Count(FakeTube::Place::kTray) == 2);
+}
+
 TEST_CASE("A sensor that is biased between two attempts is noticed when empty fingers are weighed",
           "[unit]") {
   FakeWorld world(TwoTubes());
