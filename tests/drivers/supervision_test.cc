@@ -107,7 +107,9 @@ TEST_CASE("Pulses per degree are those of the coarsest joint that is turned enou
 TEST_CASE("An alarm is told with its name, where supervision knows it", "[unit]") {
   const bool moving = GENERATE(true, false);
   const bool supervised = GENERATE(true, false);
-  CAPTURE(moving, supervised);
+  // The controller may refuse a point without a reason before it tells of its alarm.
+  const bool refused = GENERATE(true, false);
+  CAPTURE(moving, supervised, refused);
   ServedArm served;
   YaskawaConfig config = served.Config();
   config.hses_port = supervised ? served.hses_port() : 0;
@@ -117,12 +119,16 @@ TEST_CASE("An alarm is told with its name, where supervision knows it", "[unit]"
     REQUIRE(driver.Start(Moved(driver.State().q, 0.5, 4.0)).accepted());
     REQUIRE(Eventually([&] { return driver.State().progress_s > 0.3; }));
   }
-  served.With([](ArmEmulator& e, FakeServoArm&) { e.Alarm(4315); });
+  served.With([refused](ArmEmulator& e, FakeServoArm&) {
+    if (refused) e.Refuse(0, 1);
+    e.Alarm(4315);
+  });
   ArmState state;
   REQUIRE(Eventually([&] {
     state = driver.State();
     return state.mode == ArmMode::kFault;
   }));
+  INFO(state.fault);
   if (moving) {  // The motion counts as running until the name is there.
     CHECK((state.fault.find("COLLISION DETECT") != std::string::npos) == supervised);
   } else if (supervised) {

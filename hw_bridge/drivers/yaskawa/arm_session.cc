@@ -321,7 +321,8 @@ void ArmSession::Latch(const ArmTrouble& trouble, std::int32_t subcode) {
     const bool alarm = code > 0 || subcode == static_cast<std::int32_t>(sm::NotReady::kAlarm);
     if (alarm && trouble.mode == ArmMode::kFault && config_.hses_port != 0) {
       unnamed_alarm_ = code;
-      alarm_ended_motion_ = motion_.has_value();
+      // A refusal has dropped the motion before the controller was asked why.
+      alarm_ended_motion_ = motion_.has_value() || pending_.has_value();
     }
   }
   DropMotion();
