@@ -88,6 +88,28 @@ TEST_CASE("a quaternion that is none is told where it stands") {
   CHECK(error("X_FK = []").starts_with("c.toml:1:8: X_FK: 7 numbers are needed"));
 }
 
+TEST_CASE("Letters beyond ASCII stand in quotes and comments alone") {
+  const auto refused = [](const std::string& toml) { return Refusal([&] { Source(toml); }); };
+  const std::string outside = "' stands outside quotes and comments; keys are letters a to z";
+  CHECK_THAT(refused("a = 1\ngr\xC3\xB6\xC3\x9F"
+                     "e = 2"),
+             Contains("f.toml:2:3: not valid TOML: '\xC3\xB6" + outside));
+  CHECK_THAT(refused("a = \"\xC3\xB6\" \xD2\x8F"),
+             Contains("f.toml:1:9: not valid TOML: '\xD2\x8F" + outside));
+  CHECK_THAT(refused("a = [1,\xC2\xA0 2]"), Contains("f.toml:1:8: not valid TOML"));
+  CHECK_THAT(refused("\xFF"), Contains("f.toml:1:1: not valid TOML"));
+  const auto texts = Source("\xEF\xBB\xBF# \xC3\xB6\n\"\xC3\xB6\" = '\xD2\x8F' # \xC3\xB6").Texts();
+  REQUIRE(texts.size() == 1);
+  CHECK(texts.front() == std::pair<std::string, std::string>("\xC3\xB6", "\xD2\x8F"));
+  ConfigSource source;
+  source.AddOverride(
+      "driver=gr\xC3\xB6\xC3\x9F"
+      "e.toml");
+  CHECK(source.Texts().front().second ==
+        "gr\xC3\xB6\xC3\x9F"
+        "e.toml");
+}
+
 }  // namespace
 
 TEST_CASE("tables of a list become sources of their own and leave the rest") {

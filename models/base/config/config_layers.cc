@@ -1,5 +1,6 @@
 #include "models/base/config/config_layers.h"
 
+#include <algorithm>
 #include <sstream>
 
 #define TOML_ENABLE_FORMATTERS 0
@@ -67,20 +68,50 @@ std::string TooDeep(const std::string& place) {
          std::to_string(kDeepestNesting) + " deep; allowed: up to that";
 }
 
-/// The value of an override: TOML if it is one value, else the text as typed.
+/// "NAME:LINE:COLUMN" of a byte, the column in characters from 1.
+std::string PlaceOfByte(const std::string& name, std::string_view toml, std::size_t at) {
+  const std::string_view before = toml.substr(0, at);
+  const std::size_t end = before.rfind('\n');
+  const std::string_view line = end == std::string_view::npos ? before : before.substr(end + 1);
+  const auto column = std::count_if(line.begin(), line.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  });
+  return name + ":" + std::to_string(1 + std::count(before.begin(), before.end(), '\n')) + ":" +
+         std::to_string(1 + column);
+}
+
+void RequireParsable(const std::string& toml, const std::string& name) {
+  if (const auto line = LineOfDeepNesting(toml)) {
+    throw Error(ErrorKind::kConfig, TooDeep(name + ":" + std::to_string(*line)));
+  }
+  if (const auto at = FindBareNonAscii(toml)) {
+    std::size_t size = 1;
+    while (*at + size < toml.size() &&
+           (static_cast<unsigned char>(toml[*at + size]) & 0xC0) == 0x80)
+      ++size;
+    throw Error(ErrorKind::kConfig, PlaceOfByte(name, toml, *at) + ": not valid TOML: '" +
+                                        Printable(toml.substr(*at, size)) +
+                                        "' stands outside quotes and comments; keys are letters a "
+                                        "to z, digits, _ and -, anything else stands in quotes");
+  }
+}
+
+/// The value of an override: TOML if it is one value, else the text as typed: a path or a name, the
+/// usual case on a command line.
 Node OverrideValue(const std::string& raw, const std::string& place) {
   if (LineOfDeepNesting(raw)) throw Error(ErrorKind::kConfig, TooDeep(place));
+  Node node;
+  node.value = raw;
+  if (FindBareNonAscii(raw)) return node;
   try {
     const toml::table parsed = toml::parse("v = " + raw);
     if (parsed.size() == 1) {
-      Node node = FromToml(*parsed.get("v"), "");
-      if (!std::holds_alternative<Node::Unsupported>(node.value)) return node;
+      Node value = FromToml(*parsed.get("v"), "");
+      if (!std::holds_alternative<Node::Unsupported>(value.value)) return value;
     }
   } catch (const toml::parse_error&) {
-    // No TOML: a bare text such as a path or a name, the usual case on a command line.
+    // No TOML, but a text.
   }
-  Node node;
-  node.value = raw;
   return node;
 }
 
@@ -131,9 +162,7 @@ void Merge(Node::Table& below, Node::Table top) {
 
 Node::Table ParseLayer(const std::string& toml, const std::string& name,
                        const std::string& folder) {
-  if (const auto line = LineOfDeepNesting(toml)) {
-    throw Error(ErrorKind::kConfig, TooDeep(name + ":" + std::to_string(*line)));
-  }
+  RequireParsable(toml, name);
   try {
     Node::Table table = TableFromToml(toml::parse(toml, name), name);
     for (auto& [key, node] : table) SetFolder(node, folder);
