@@ -90,13 +90,11 @@ TEST_CASE("a quaternion that is none is told where it stands") {
 
 TEST_CASE("Letters beyond ASCII stand in quotes and comments alone") {
   const auto refused = [](const std::string& toml) { return Refusal([&] { Source(toml); }); };
-  const std::string outside = "' stands outside quotes and comments; keys are letters a to z";
   CHECK_THAT(refused("a = 1\ngr\xC3\xB6\xC3\x9F"
                      "e = 2"),
-             Contains("f.toml:2:3: not valid TOML: '\xC3\xB6" + outside));
-  CHECK_THAT(refused("a = \"\xC3\xB6\" \xD2\x8F"),
-             Contains("f.toml:1:9: not valid TOML: '\xD2\x8F" + outside));
-  CHECK_THAT(refused("a = [1,\xC2\xA0 2]"), Contains("f.toml:1:8: not valid TOML"));
+             Contains("f.toml:2:3: not valid TOML") && Contains("saw '\xC3\xB6'"));
+  CHECK_THAT(refused("a = \"\xC3\xB6\" \xD2\x8F"), Contains("f.toml:1:9: not valid TOML"));
+  CHECK_THAT(refused("a = 5Q\"\xC3\xB6\""), Contains("not valid TOML"));
   CHECK_THAT(refused("\xFF"), Contains("f.toml:1:1: not valid TOML"));
   const auto texts = Source("\xEF\xBB\xBF# \xC3\xB6\n\"\xC3\xB6\" = '\xD2\x8F' # \xC3\xB6").Texts();
   REQUIRE(texts.size() == 1);

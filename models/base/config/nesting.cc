@@ -9,22 +9,20 @@ class Walker {
  public:
   explicit Walker(std::string_view toml) : rest_(toml) {}
 
-  bool at_end() const { return rest_.empty(); }
-  bool too_deep() const { return brackets_ > kDeepestNesting || parts_ > kDeepestNesting; }
-  int line() const { return line_; }
-  /// What begins with the next character outside texts and comments, or with one of these.
-  std::string_view rest() const { return rest_; }
-
-  void Step() {
-    const char c = rest_.front();
-    if (c == '#') {
-      SkipTo(rest_.find('\n'));
-    } else if (c == '"' || c == '\'') {
-      SkipText(c);
-    } else {
-      Count(c);
-      rest_.remove_prefix(1);
+  std::optional<int> FindDeep() {
+    while (!rest_.empty()) {
+      const char c = rest_.front();
+      if (c == '#') {
+        SkipTo(rest_.find('\n'));
+      } else if (c == '"' || c == '\'') {
+        SkipText(c);
+      } else {
+        Count(c);
+        rest_.remove_prefix(1);
+      }
+      if (brackets_ > kDeepestNesting || parts_ > kDeepestNesting) return line_;
     }
+    return std::nullopt;
   }
 
  private:
@@ -73,22 +71,6 @@ class Walker {
 
 }  // namespace
 
-std::optional<int> LineOfDeepNesting(std::string_view toml) {
-  Walker walker(toml);
-  while (!walker.at_end()) {
-    walker.Step();
-    if (walker.too_deep()) return walker.line();
-  }
-  return std::nullopt;
-}
-
-std::optional<std::size_t> FindBareNonAscii(std::string_view toml) {
-  const std::size_t begin = toml.starts_with("\xEF\xBB\xBF") ? 3 : 0;  // A byte order mark.
-  for (Walker walker(toml.substr(begin)); !walker.at_end(); walker.Step()) {
-    if ((static_cast<unsigned char>(walker.rest().front()) & 0x80) == 0) continue;
-    return toml.size() - walker.rest().size();
-  }
-  return std::nullopt;
-}
+std::optional<int> LineOfDeepNesting(std::string_view toml) { return Walker(toml).FindDeep(); }
 
 }  // namespace tubetwin::config_internal

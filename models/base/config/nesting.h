@@ -14,9 +14,4 @@ constexpr int kDeepestNesting = 32;
 /// the parts of one key. Looks at the text alone, before any parser does. Nothing: it does not.
 std::optional<int> LineOfDeepNesting(std::string_view toml);
 
-/// Where, as a byte of the text, the first character beyond ASCII stands outside quotes and
-/// comments. TOML allows none there, and toml++ 3.3 has no defined answer to U+00A1 to U+0499
-/// (is_non_ascii_horizontal_whitespace). Nothing: there is none.
-std::optional<std::size_t> FindBareNonAscii(std::string_view toml);
-
 }  // namespace tubetwin::config_internal
