@@ -15,10 +15,10 @@ using Verdict = Finding::Verdict;
 /// A weight of so many counts is told from twice of it, of so many hardly: the limit of one tube is
 /// half its weight away (F_tol), which should be some counts and must be one.
 constexpr double kGoodCounts = 10.0, kLeastCounts = 2.0;
-/// Points across the diameter with which tubes are modelled well, and below which they are not.
-/// Four bent tubes flat on the floor, eight views: with 17 and 20 across one of four was found,
-/// with 23 and 34 all.
-constexpr double kGoodAcross = 22.0, kLeastAcross = 18.0;
+/// Points across the diameter on the floor with which tubes are modelled well, and below which they
+/// are not. Four bent tubes, eight views: with 15 and 17 across one of four was found, with 20 and
+/// 29 all.
+constexpr double kGoodAcross = 19.0, kLeastAcross = 15.5;
 /// What another tube of the kind hides of a tube, in radii: itself and as much for the shadows.
 constexpr double kHiddenRadii = 4.0;
 /// Hooks of the shape "hooks" (scenes/draw_shape.cc).
@@ -41,6 +41,20 @@ std::string Text(double value, int digits, const char* unit) {
 std::string Whole(double value) { return std::to_string(std::lround(std::ceil(value))); }
 std::string Mm(double m) { return Text(1e3 * m, 1, "mm"); }
 std::string Newtons(double N) { return Text(N, N < 1.0 ? 3 : 1, "N"); }
+
+/// From the camera to the bin's floor along its view, on average where views are listed.
+double DistanceToFloor(const CellLayout& layout) {
+  const bool stand = layout.scanner_mount == CellLayout::ScannerMount::kStand;
+  if (!stand && layout.scan_poses_BS.empty()) return layout.scan_height_m;
+  const std::vector<RigidTransform> stands = {layout.X_BS};
+  const std::vector<RigidTransform>& poses_BS = stand ? stands : layout.scan_poses_BS;
+  double sum_m = 0.0;
+  for (const RigidTransform& X_BS : poses_BS) {
+    const Vector3 to_floor = layout.X_BN.translation() - X_BS.translation();
+    sum_m += to_floor.z() / X_BS.linear()(2, 2);
+  }
+  return sum_m / static_cast<double>(poses_BS.size());
+}
 
 Finding JudgeOpening(const Part& part, const PartFitCell& cell) {
   const double stroke_m = cell.gripper.stroke_m;
@@ -112,12 +126,12 @@ Finding JudgeWeight(const Part& part, const PartFitCell& cell) {
 
 Finding JudgePoints(const Part& part, const PartFitCell& cell) {
   const ScannerSpec& s = cell.scanner;
-  const double pitch_m = s.sweet_spot_m / s.focal_px * s.full_width / cell.scan_width;
+  const double pitch_m = cell.scan_distance_m / s.focal_px * s.full_width / cell.scan_width;
   const double across = 2.0 * part.radius_m / pitch_m, along = part.length_m / pitch_m;
   Finding out;
   out.what = "points of a scan";
   out.found = Text(across, 0, "across") + ", " + Text(along, 0, "along") + " (" +
-              Text(1e3 * pitch_m, 2, "mm") + " apart at " + Mm(s.sweet_spot_m) + ")";
+              Text(1e3 * pitch_m, 2, "mm") + " apart at " + Mm(cell.scan_distance_m) + ")";
   out.allowed = "at least " + Text(kGoodAcross, 0, "across");
   if (across < kGoodAcross) {
     out.verdict = across < kLeastAcross ? Verdict::kImpossible : Verdict::kDoubtful;
@@ -200,7 +214,8 @@ PartFitCell::PartFitCell(const CellModel& model)
       count_N(model.wrist.count[2]),
       noise_N(model.wrist.count[2]),
       max_reading_N(model.wrist.range[2]),
-      scan_width(SizeOfScan(model.scanner, "").width) {}
+      scan_width(SizeOfScan(model.scanner, "").width),
+      scan_distance_m(DistanceToFloor(model.layout)) {}
 
 std::vector<Finding> JudgePart(const Part& part, const PartFitCell& cell) {
   std::vector<Finding> out = {JudgeOpening(part, cell), JudgeGrip(part, cell),

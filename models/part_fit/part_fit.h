@@ -26,7 +26,8 @@ struct PartFitCell {
   /// Wrist sensor along gravity: one count, noise of one reading (one sigma), drift over ten
   /// minutes, largest reading.
   double count_N, noise_N, drift_N = 0.1, max_reading_N;
-  int scan_width;  ///< Pixels of a row of the image that is taken (scan.resolution).
+  int scan_width;          ///< Pixels of a row of the image that is taken (scan.resolution).
+  double scan_distance_m;  ///< Camera to the bin's floor, along its view.
   /// Turn squared times gap at which the ends of a tube's hidden piece look as much like those of
   /// two tubes (perception/joining).
   double even_turn_m = 0.079;

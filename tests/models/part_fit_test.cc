@@ -94,24 +94,36 @@ TEST_CASE("A weight is judged by the sensor's counts", "[unit]") {
   CheckVerdict(About("sensor", part, small), Verdict::kImpossible);
 }
 
-TEST_CASE("Points of a scan follow from the scanner's pitch at its sweet spot", "[unit]") {
+TEST_CASE("Points of a scan follow from the scanner's pitch on the bin's floor", "[unit]") {
   Part part = LoadPart("pvc_a");
   PartFitCell cell(PaperCell());
-  cell.scanner.sweet_spot_m = 0.5;
+  cell.scan_distance_m = 0.5;
   cell.scanner.focal_px = 1000.0;  // Half a millimetre apart in full, one in a half image.
   cell.scanner.full_width = 2000;
   cell.scan_width = 1000;
   CHECK_THAT(About("points", part, cell).found,
              Catch::Contains("25 across, 500 along (1 mm apart"));
   CheckVerdict(About("points", part, cell), Verdict::kOk);
-  part.radius_m = 0.0095;
+  part.radius_m = 0.009;
   CheckVerdict(About("points", part, cell), Verdict::kDoubtful);
-  CHECK_THAT(About("points", part, cell).remedy, Catch::Contains("38 across"));
+  CHECK_THAT(About("points", part, cell).remedy, Catch::Contains("36 across"));
   cell.scan_width = 2000;
   CheckVerdict(About("points", part, cell), Verdict::kOk);
   cell.scanner.focal_px = 150.0;
   CheckVerdict(About("points", part, cell), Verdict::kImpossible);
-  CHECK_THAT(About("points", part, cell).remedy, Catch::Contains("0.86 mm apart"));
+  CHECK_THAT(About("points", part, cell).remedy, Catch::Contains("0.95 mm apart"));
+}
+
+TEST_CASE("The scanner's distance is that of the cell: planned, listed or on a stand", "[unit]") {
+  const auto distance_m = [](const CellModel& model) { return PartFitCell(model).scan_distance_m; };
+  CHECK(distance_m(PaperCell()) == Approx(0.515));
+  CHECK(distance_m(LoadCellModel("gp12_stand")) == Approx(1.15));
+  CellModel listed = PaperCell();
+  const Vector3 p_BN = listed.layout.X_BN.translation();
+  const Matrix3 leaning = RotX(kPi - Radians(30.0));
+  listed.layout.scan_poses_BS = {MakeTransform(RotX(kPi), p_BN + Vector3(0.1, 0.0, 0.4)),
+                                 MakeTransform(leaning, p_BN + Vector3(0.0, 0.2, 0.6))};
+  CHECK(distance_m(listed) == Approx(0.5 * (0.4 + 0.6 / std::cos(Radians(30.0)))));
 }
 
 TEST_CASE("A bend is judged by how much of it another tube hides", "[unit]") {
