@@ -139,7 +139,6 @@ std::optional<WaitOutcome> WristTrouble(const Cell& cell, const WrenchSample& sa
   const auto trouble = [](const std::string& reason) {
     return Trouble(WaitOutcome::Status::kSensorFault, "wrist: " + reason);
   };
-  if (!sample.problem.empty()) return trouble(sample.problem);
   const Vector3 &force_N = sample.wrench_K.force_N, &torque_Nm = sample.wrench_K.torque_Nm;
   for (int axis = 0; axis < 6; ++axis) {
     const double reading = axis < 3 ? force_N[axis] : torque_Nm[axis - 3];
@@ -149,6 +148,8 @@ std::optional<WaitOutcome> WristTrouble(const Cell& cell, const WrenchSample& sa
     return trouble(std::string(kWristAxes[axis]) + " is " + Number("%.1f", reading) + unit +
                    ", its range ends at " + Number("%.1f", range) + unit);
   }
+  // A sensor that is stuck beyond its range says more by the range.
+  if (!sample.problem.empty()) return trouble(sample.problem);
   const double age_s = Age_s(cell, sample.time);
   if (age_s <= patience * cell.safety.wrist_silence_s) return std::nullopt;
   return trouble("newest wrench is " + Number("%.3f", age_s) + " s old");

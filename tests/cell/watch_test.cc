@@ -134,6 +134,8 @@ TEST_CASE("What a driver says against its gripper or wrist is the reason", "[uni
   const WrenchOutcome weighed = AverageWrench(stuck.cell, 0.1);
   CHECK(weighed.outcome.status == Status::kSensorFault);
   CHECK_THAT(weighed.outcome.reason, Catch::Contains("wrist: always the same"));
+  stuck.wrist.load_K.force_N.x() = -2147.0;
+  CHECK_THAT(AverageWrench(stuck.cell, 0.1).outcome.reason, Catch::Contains("its range ends at"));
 }
 
 TEST_CASE("A wrench beyond the sensor's range ends a guarded motion and a weighing", "[unit]") {
