@@ -142,6 +142,8 @@ def what_a_killed_program_left_is_not_dropped(folder):
     # Where the arm was killed in motion its controller is the first to say that something is left.
     said = "left there by an earlier program" in err or "an earlier connection has left motion" in err
     check(code == 69 and said, f"the next round does not begin: {code} {err}")
+    left = "an earlier connection has left motion" in err
+    check(("nobody commands" in doctor.stdout) == left, f"doctor tells of motion where some is left: {doctor.stdout}")
     time.sleep(0.5)
     check(not {"open", "arm moves"} & set(events_since(emulation, began_s)), "nothing moves")
     emulation.stop()
