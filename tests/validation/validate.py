@@ -2,8 +2,9 @@
 """Holds the exported models against theory with the stock engine (./dev validate).
 
   validate.py [--fast] [--bin build/bin] [--environment build/deps/validation] [--page VALIDATION.md] [--only TEXT]
+              [--rods FOLDER]
 
---fast leaves out what takes minutes. --only runs groups whose title holds TEXT.
+--fast leaves out what takes minutes. --only runs groups whose title holds TEXT. --rods reads the DEFORM data set (rods.py).
 Ends with 0 when nothing is outside that is not known to be, 1 otherwise, 77 without its Python environment.
 """
 
@@ -34,6 +35,8 @@ KNOWN = {
     "pin of coupler and follower: farthest outside of the gripper's shapes": "shapes without the linkage",
 }
 
+MAY_DIVERGE = ("Real rods", "Mutants")  # A fit tries bad values, a mutant is one.
+
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -42,6 +45,7 @@ def arguments():
     parser.add_argument("--environment", default=os.path.join(ROOT, "build", "deps", "validation"))
     parser.add_argument("--page", help="write the page there")
     parser.add_argument("--only", default="")
+    parser.add_argument("--rods", help="data_set folder of roahmlab/DEFORM")
     return parser.parse_args()
 
 
@@ -56,9 +60,9 @@ def enter(environment):
     os.execv(python, [python, os.path.abspath(__file__), *sys.argv[1:]])
 
 
-def groups():
+def groups(rods_folder):
     """Title, text, functions, and those left out by --fast."""
-    import check_arm, check_bending, check_body, check_grip, check_gripper, check_rest, check_scan, mutants  # noqa: E401
+    import check_arm, check_bending, check_body, check_grip, check_gripper, check_rest, check_scan, mutants, rods  # noqa: E401
     return (
         ("Bending and twist", "A hose of `hose_b`, straight, hooked or closed to a ring.",
          (check_bending.elastica, check_bending.modes, check_bending.hook, check_bending.torsion,
@@ -71,20 +75,28 @@ def groups():
         ("Gripper's room", "Shapes of the cell's gripper at five openings.", (check_gripper.envelope,), ()),
         ("Arm", "The cell's arm without its tool.", (check_arm.kinematics_and_dynamics,), ()),
         ("Scanner", "`tubetwin scan` of four straight tubes at four heights.", (check_scan.rays,), ()),
+        ("Real rods", rods.TEXT + ("" if rods_folder else rods.NOT_MEASURED), rods.checks(rods_folder), ()),
         ("Mutants", "The suite tests itself: models that are wrong by a fifth.", (mutants.mutants,), ()),
     )
 
 
 def measure(lab, title, text, functions):
+    import mujoco
+
     import page
     import suite
-    group, begun = page.Group(title, text, []), time.monotonic()
+    group, begun, warnings = page.Group(title, text, []), time.monotonic(), []
+    mujoco.set_mju_user_warning(warnings.append)
     for function in functions:
         try:
             group.checks += list(function(lab))
         except suite.Refused as refusal:
             name = f"{function.__module__}.{function.__name__}"
             group.checks.append(suite.Check(f"{name} can be made", 1, 0, 0, str(refusal), "this suite", kind="least"))
+    if title not in MAY_DIVERGE:
+        group.checks.append(suite.Check(f"{title}: warnings of the engine", 0, len(warnings), 0,
+                                        warnings[0].strip() if warnings else "none is expected", "this suite",
+                                        kind="most"))
     group.seconds = time.monotonic() - begun
     return group
 
@@ -109,7 +121,7 @@ def main():
     results = []
     with tempfile.TemporaryDirectory() as folder:
         lab = suite.Lab(os.path.abspath(choice.bin), folder)
-        for title, text, fast, slow in groups():
+        for title, text, fast, slow in groups(choice.rods):
             if choice.only.lower() in title.lower():
                 results.append(measure(lab, title, text, fast if choice.fast else fast + slow))
                 show(results[-1])
