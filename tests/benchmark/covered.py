@@ -2,13 +2,14 @@
 """How a campaign's attempts at covered tubes ended (covered.toml): taken alone by the motion (one tube in the fingers when
 it was weighed, by truth), and one tube placed, shaken off others included. All, by covers, by tubes left in the bin, by
 what was foretold, by motion.
+Intervals by rounds.
     python3 covered.py OUT..."""
 import glob
 import json
 import re
 import sys
 
-from intervals import wilson
+from intervals import by_rounds
 
 
 def attempts(out):
@@ -17,7 +18,7 @@ def attempts(out):
             for pick in json.loads(line).get("picks", []):
                 # Free tubes go up without the simulator.
                 if pick["outcome"] != "no_plan" and pick["used_simulator"]:
-                    yield pick
+                    yield pick | {"in": (out, pick["variant"], pick["round"])}
 
 
 def foretold(pick):
@@ -42,9 +43,9 @@ def main():
     for name, group in groups.items():
         for value in sorted({group(pick) for pick in picks}):
             those = [pick for pick in picks if group(pick) == value]
-            alone = sum(pick["truth"]["held"] == 1 for pick in those)
-            placed = sum(pick["outcome"] == "placed" and pick["success"] for pick in those)
-            print(f"| {name} | {value} | {wilson(alone, len(those))} | {wilson(placed, len(those))} |")
+            alone = by_rounds((pick["in"], pick["truth"]["held"] == 1) for pick in those)
+            placed = by_rounds((pick["in"], pick["outcome"] == "placed" and pick["success"]) for pick in those)
+            print(f"| {name} | {value} | {alone} | {placed} |")
 
 
 main()

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Statistics of the rounds that rounds.sh made: python3 rounds.py OUT. Rates with Wilson 95 % intervals."""
+"""Statistics of the rounds that rounds.sh made: python3 rounds.py OUT. Rates with 95 % intervals: those over
+attempts and tubes by rounds, Wilson's of bins."""
 import collections
 import glob
 import json
@@ -7,12 +8,12 @@ import os
 import statistics
 import sys
 
-from intervals import wilson_interval
+from intervals import cluster_interval, told, wilson
 
 
-def rate(k, n):
-    low, high = wilson_interval(k, n)
-    return f"{k}/{n} = {100 * k / max(1, n):.1f} % [{100 * low:.1f}, {100 * high:.1f}]"
+def rate(rounds):
+    rounds = list(rounds)
+    return told(sum(k for k, _ in rounds), sum(n for _, n in rounds), cluster_interval(rounds))
 
 
 def main(folder):
@@ -30,25 +31,37 @@ def main(folder):
         rounds[part].append((os.path.basename(here), summary, picks, times, wall))
     for part, done in rounds.items():
         n = len(done)
-        placed = sum(s["placed"] for _, s, _, _, _ in done)
         start = sum(s["tubes_start"] for _, s, _, _, _ in done)
-        k = sum(s["first_attempt"]["k"] for _, s, _, _, _ in done)
-        m = sum(s["first_attempt"]["n"] for _, s, _, _, _ in done)
         attempts = [p for _, _, picks, _, _ in done for p in picks]
         good = [p for p in attempts if p["success"]]
         outcomes = collections.Counter(p["outcome"] for p in attempts)
-        belief = sum((p["outcome"] == "placed") != bool(p["success"]) for p in attempts)
-        several = [p for p in attempts if p["resolution"]["used"]]
-        solved = sum(p["resolution"]["outcome"] == "one" for p in several)
+
+        def of_attempts(counted, test):
+            return rate((sum(map(test, filter(counted, picks))), sum(map(counted, picks))) for _, _, picks, _, _ in done)
+
+        def of_tubes(name):
+            return rate((s[name], s["tubes_start"]) for _, s, _, _, _ in done)
+
+        def of_summaries(name):
+            return rate((s[name]["k"], s[name]["n"]) for _, s, _, _, _ in done if s.get(name))
+
+        def any_attempt(_):
+            return True
+
         print(f"{part}: {n} rounds, {start} tubes")
-        print(f"  bins emptied          {rate(sum(s['emptied'] for _, s, _, _, _ in done), n)}")
-        print(f"  tubes placed          {rate(placed, start)}")
-        print(f"  first attempt         {rate(k, m)}")
+        print(f"  bins emptied          {wilson(sum(s['emptied'] for _, s, _, _, _ in done), n)}")
+        print(f"  tubes placed          {of_tubes('placed')}")
+        print(f"  attempts with success {of_summaries('success')}")
+        print(f"  in tolerance          {of_summaries('in_tolerance')}")
+        print(f"  first attempt         {of_summaries('first_attempt')}")
+        print(f"  of all at the start   {of_summaries('first_attempt_of_start')}")
         print(f"  attempts              {len(attempts)}: {dict(outcomes)}")
-        print(f"  dropped               {rate(outcomes['dropped'], len(attempts))}")
-        print(f"  outside               {rate(sum(s['outside'] for _, s, _, _, _ in done), start)}")
-        print(f"  belief not truth      {rate(belief, len(attempts))}")
-        print(f"  resolution succeeded  {rate(solved, len(several))}")
+        print(f"  dropped               {of_attempts(any_attempt, lambda p: p['outcome'] == 'dropped')}")
+        print(f"  outside               {of_tubes('outside')}")
+        print(f"  belief not truth      "
+              f"{of_attempts(any_attempt, lambda p: (p['outcome'] == 'placed') != bool(p['success']))}")
+        print(f"  resolution succeeded  "
+              f"{of_attempts(lambda p: p['resolution']['used'], lambda p: p['resolution']['outcome'] == 'one')}")
         if good:
             sims = [p["sim_s"]["total"] for p in attempts]
             walls = [t["wall_s"] for _, _, _, times, _ in done for t in times]

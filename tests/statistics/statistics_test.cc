@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "models/base/error.h"
+#include "models/base/json.h"
 #include "tests/support/catch.h"
+#include "twin/statistics/rate.h"
 
 namespace tubetwin {
 namespace {
@@ -85,57 +87,112 @@ TEST_CASE("quantiles interpolate between order statistics") {
   CHECK(SpreadOf({}).n == 0);
 }
 
-TEST_CASE(
-    "the clustered interval is as wide as independent trials allow when clusters are single") {
-  // 200 rounds of one trial, 160 good: the normal interval is 0.8 +- 0.0554.
+namespace {
+
+/// Rounds of seven beta-binomial trials of chance `p`, two of a round correlated by `rho`: Polya's
+/// urn, in which each success makes the next of its round more likely.
+std::vector<Counts> BetaBinomial(double p, double rho, int rounds, RandomStream& random) {
+  std::vector<Counts> out;
+  for (int i = 0; i < rounds; ++i) {
+    Counts round{0, 7};
+    for (int j = 0; j < 7; ++j) {
+      const double chance = (p * (1.0 - rho) + rho * round.k) / (1.0 - rho + rho * j);
+      round.k += random.Uniform() < chance ? 1 : 0;
+    }
+    out.push_back(round);
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("the interval by clusters is Wilson's when clusters are single or do not differ") {
+  // 200 rounds of one trial: a design effect of 200 / 199, and (z / t)^2 of 199 degrees of freedom.
   std::vector<Counts> clusters;
   for (int i = 0; i < 200; ++i) clusters.push_back({i < 160 ? 1 : 0, 1});
-  const ShareInterval found = ClusterBootstrap95(clusters, Stream(1));
-  constexpr double kMonteCarlo = 0.01;  // 2,000 resamples leave about 0.003 on each bound.
-  CHECK(found.low == Approx(0.7446).margin(kMonteCarlo));
-  CHECK(found.high == Approx(0.8554).margin(kMonteCarlo));
+  const ShareInterval found = ClusterWilson95(clusters);
+  const ShareInterval wilson = Wilson95(160, 200);
+  CHECK(found.low == Approx(wilson.low).margin(0.002));
+  CHECK(found.high == Approx(wilson.high).margin(0.002));
+  CHECK(found.low < wilson.low);
+  CHECK(found.high > wilson.high);
+  // Rounds more alike than chance makes them are not worth more than independent trials.
+  const ShareInterval alike = ClusterWilson95(std::vector<Counts>(40, {6, 7}));
+  CHECK(alike.low < Wilson95(240, 280).low);
 }
 
-TEST_CASE("the clustered interval widens by the square root of the cluster when trials agree") {
+TEST_CASE("the interval by clusters is that of published effective sizes") {
+  // By hand: k 4, 2, 3, 1 of 5 each; share 0.5, variance between 5 / 300, deff 4 / 3, worth 15
+  // trials, t(0.975; 3) = 3.182446: Wilson of 0.5 with 5.689447.
+  const ShareInterval found = ClusterWilson95({{4, 5}, {2, 5}, {3, 5}, {1, 5}});
+  const double n = 15.0 * std::pow(1.959964 / 3.182446, 2);
+  const double z2 = 1.959964 * 1.959964;
+  const double half = std::sqrt(z2 / n * (0.25 + z2 / (4.0 * n))) / (1.0 + z2 / n);
+  CHECK(found.low == Approx(0.5 - half).margin(1e-6));
+  CHECK(found.high == Approx(0.5 + half).margin(1e-6));
+}
+
+TEST_CASE("the interval by clusters widens by the square root of the cluster when trials agree") {
   std::vector<Counts> clusters;
   for (int i = 0; i < 200; ++i) clusters.push_back({i < 160 ? 7 : 0, 7});
-  const ShareInterval found = ClusterBootstrap95(clusters, Stream(2));
+  const ShareInterval found = ClusterWilson95(clusters);
   const ShareInterval independent = Wilson95(1120, 1400);
   const double ratio = (found.high - found.low) / (independent.high - independent.low);
-  CHECK(ratio == Approx(std::sqrt(7.0)).epsilon(0.08));  // Monte Carlo.
+  CHECK(ratio == Approx(std::sqrt(7.0)).epsilon(0.02));  // Wilson's own centre shifts a little.
 }
 
-TEST_CASE("the clustered interval covers the truth about 95 times in 100") {
-  // Rounds with a chance of their own, 0.6 to 1, seven trials each: mean 0.8.
-  int covered = 0;
-  constexpr int kTrials = 300;
+TEST_CASE("where all trials succeed, or none, a whole cluster counts as one trial") {
+  const ShareInterval all = ClusterWilson95(std::vector<Counts>(40, {7, 7}));
+  CHECK(all.low == Wilson95(40, 40).low);
+  CHECK(all.high == 1.0);
+  const ShareInterval none = ClusterWilson95(std::vector<Counts>(40, {0, 7}));
+  CHECK(none.low == 0.0);
+  CHECK(none.high == Wilson95(0, 40).high);
+  // Rounds in which nothing was tried say nothing.
+  CHECK(ClusterWilson95({{7, 7}, {0, 0}, {7, 7}}).low == Wilson95(2, 2).low);
+  CHECK(ClusterWilson95({{6, 7}}).low == Wilson95OfShare(6.0 / 7.0, 1.0).low);
+}
+
+TEST_CASE("the interval by clusters covers the truth of correlated trials, near 1 too") {
+  constexpr int kTrials = 2000;
+  constexpr double kLeast = 0.92;  // Of nominal 0.95; strongly correlated rounds come closest.
   RandomStream random = Stream(3);
-  for (int trial = 0; trial < kTrials; ++trial) {
-    std::vector<Counts> clusters;
-    for (int i = 0; i < 60; ++i) {
-      const double chance = random.Uniform(0.6, 1.0);
-      Counts round{0, 7};
-      for (int j = 0; j < 7; ++j) round.k += random.Uniform() < chance ? 1 : 0;
-      clusters.push_back(round);
+  for (const double p : {0.8, 0.95, 0.99}) {
+    for (const double rho : {0.0, 0.1, 0.2, 0.3}) {
+      for (const int rounds : {20, 40, 80}) {
+        int covered = 0;
+        for (int trial = 0; trial < kTrials; ++trial) {
+          const ShareInterval found = ClusterWilson95(BetaBinomial(p, rho, rounds, random));
+          covered += found.low <= p && p <= found.high ? 1 : 0;
+        }
+        INFO("share " << p << ", correlation " << rho << ", " << rounds << " rounds: " << covered);
+        CHECK(covered >= kLeast * kTrials);
+      }
     }
-    const ShareInterval found = ClusterBootstrap95(clusters, Stream(100 + trial), 400);
-    covered += found.low <= 0.8 && 0.8 <= found.high ? 1 : 0;
   }
-  CHECK(covered >= 0.90 * kTrials);  // A percentile interval of 60 clusters is a little narrow.
-  CHECK(covered <= 0.99 * kTrials);
 }
 
-TEST_CASE("the same stream gives the same interval and no trial says nothing") {
-  const std::vector<Counts> clusters = {{1, 2}, {3, 4}, {0, 0}, {2, 2}};
-  const ShareInterval first = ClusterBootstrap95(clusters, Stream(4));
-  const ShareInterval again = ClusterBootstrap95(clusters, Stream(4));
-  CHECK(first.low == again.low);
-  CHECK(first.high == again.high);
-  CHECK(ClusterBootstrap95({}, Stream(4)).high == 1.0);
-  CHECK(ClusterBootstrap95({{0, 0}}, Stream(4)).low == 0.0);
+TEST_CASE("no trial says nothing, and impossible counts are a bug") {
+  CHECK(ClusterWilson95({}).high == 1.0);
+  CHECK(ClusterWilson95({{0, 0}}).low == 0.0);
+  CHECK_THROWS_AS(ClusterWilson95({{3, 2}, {0, 5}}), LogicError);
   CHECK(std::isnan(Bootstrap95(
                        0, [](const std::vector<int>&) { return 1.0; }, Stream(4))
                        .low));
+}
+
+TEST_CASE("a rate tells its interval by rounds where there are several, else Wilson's") {
+  const std::vector<Counts> rounds = {{7, 7}, {6, 8}, {7, 7}};
+  const Rate clustered = RateOf(rounds, Trials::kClustered);
+  REQUIRE(clustered.by_cluster);
+  CHECK(Interval95(clustered).low == ClusterWilson95(rounds).low);
+  const Json json = ToJson(clustered);
+  CHECK(json["wilson95"][0] == Wilson95(20, 22).low);
+  CHECK(json["cluster95"][1] == clustered.by_cluster->high);
+  const Rate single = RateOf({{6, 8}}, Trials::kClustered);
+  CHECK_FALSE(single.by_cluster);
+  CHECK(Interval95(single).low == Wilson95(6, 8).low);
+  CHECK_FALSE(RateOf(rounds, Trials::kIndependent).by_cluster);
 }
 
 }  // namespace tubetwin

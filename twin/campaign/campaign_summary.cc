@@ -15,12 +15,8 @@ using Rounds = std::vector<RoundFacts>;
 bool PlacedOne(const AttemptFacts& facts) { return facts.PlacedOne(); }
 
 /// The rate of the attempts that pass `counted`, as a metric would tell it.
-Rate RateWhere(const Rounds& rounds, const AttemptTest& counted, const AttemptTest& good,
-               const std::optional<RandomStream>& random) {
-  const Metric metric = AttemptRate("", "", counted, good);
-  std::vector<Counts> counts;
-  for (const RoundFacts& round : rounds) counts.push_back(metric.reduce(round).counts);
-  return RateOf(counts, random);
+Rate RateWhere(const Rounds& rounds, const AttemptTest& counted, const AttemptTest& good) {
+  return ValueOf(AttemptRate("", "", counted, good), rounds).rate;
 }
 
 template <class Use>
@@ -37,7 +33,7 @@ Frequencies Ranked(const std::map<std::string, int>& counts) {
   return out;
 }
 
-std::vector<TubesLeftSummary> ByTubesLeft(const Rounds& rounds, const RandomStream& random) {
+std::vector<TubesLeftSummary> ByTubesLeft(const Rounds& rounds) {
   std::set<int, std::greater<>> lefts;
   ForEachAttempt(rounds, [&](const AttemptFacts& facts) { lefts.insert(facts.tubes_left); });
   std::vector<TubesLeftSummary> out;
@@ -46,12 +42,9 @@ std::vector<TubesLeftSummary> ByTubesLeft(const Rounds& rounds, const RandomStre
     const auto placed_here = [&](const AttemptFacts& facts) {
       return here(facts) && PlacedOne(facts);
     };
+    const auto first = [](const AttemptFacts& facts) { return facts.first; };
     out.push_back(
-        {left,
-         RateWhere(rounds, here, PlacedOne, random.Fork("left", static_cast<std::uint64_t>(left))),
-         RateWhere(
-             rounds, placed_here, [](const AttemptFacts& facts) { return facts.first; },
-             std::nullopt)});
+        {left, RateWhere(rounds, here, PlacedOne), RateWhere(rounds, placed_here, first)});
   }
   return out;
 }
@@ -60,7 +53,7 @@ std::string MotionOf(const AttemptFacts& facts) {
   return facts.attempt->chosen ? facts.attempt->chosen->motion : "none";
 }
 
-std::vector<MotionSummary> ByMotion(const Rounds& rounds, const RandomStream& random) {
+std::vector<MotionSummary> ByMotion(const Rounds& rounds) {
   std::map<std::string, int> uses;
   ForEachAttempt(rounds, [&](const AttemptFacts& facts) { ++uses[MotionOf(facts)]; });
   std::vector<MotionSummary> out;
@@ -70,7 +63,7 @@ std::vector<MotionSummary> ByMotion(const Rounds& rounds, const RandomStream& ra
     };
     MotionSummary row;
     row.motion = name;
-    row.success = RateWhere(rounds, chosen, PlacedOne, random.Fork("motion", out.size()));
+    row.success = RateWhere(rounds, chosen, PlacedOne);
     std::vector<double> move_s;
     ForEachAttempt(rounds, [&](const AttemptFacts& facts) {
       if (!chosen(facts)) return;
@@ -117,9 +110,9 @@ CampaignTotals TotalsOf(const Rounds& rounds) {
 }
 
 std::vector<MetricValue> ValuesOf(const std::vector<Metric>& metrics, const Rounds& rounds,
-                                  const std::optional<RandomStream>& random) {
+                                  bool mixed) {
   std::vector<MetricValue> out;
-  for (const Metric& metric : metrics) out.push_back(ValueOf(metric, rounds, random));
+  for (const Metric& metric : metrics) out.push_back(ValueOf(metric, rounds, mixed));
   return out;
 }
 
@@ -131,9 +124,9 @@ VariantSummary SummarizeVariant(const CampaignResult& result, int variant,
   out.name = result.VariantName(variant);
   out.totals = TotalsOf(rounds);
   out.parts_per_hour = PartsPerHourOf(rounds, HourOf::kCell, random.Fork("parts_per_hour"));
-  out.metrics = ValuesOf(metrics, rounds, random);
-  out.by_tubes_left = ByTubesLeft(rounds, random);
-  out.by_motion = ByMotion(rounds, random);
+  out.metrics = ValuesOf(metrics, rounds, /*mixed=*/false);
+  out.by_tubes_left = ByTubesLeft(rounds);
+  out.by_motion = ByMotion(rounds);
   std::map<std::string, int> failures, ends;
   ForEachAttempt(rounds, [&](const AttemptFacts& facts) {
     if (!facts.failure.empty()) ++failures[facts.failure];
@@ -189,7 +182,7 @@ CampaignSummary Summarize(const CampaignResult& result, const std::vector<Metric
   CampaignSummary out;
   out.seed = result.identity.seed;
   out.totals = TotalsOf(all);
-  out.metrics = ValuesOf(metrics, all, std::nullopt);
+  out.metrics = ValuesOf(metrics, all, /*mixed=*/true);
   for (int variant = 0; variant < result.variants(); ++variant) {
     out.variants.push_back(
         SummarizeVariant(result, variant, metrics, BootstrapStream(out.seed, variant)));

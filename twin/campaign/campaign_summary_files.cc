@@ -66,17 +66,12 @@ Json VariantSummaryJson(const VariantSummary& variant) {
 
 std::string RateText(const Rate& rate) {
   const auto [k, n] = rate.counts;
-  const ShareInterval wilson = Wilson95(k, n);
+  const ShareInterval interval = Interval95(rate);
   char text[96];
-  std::snprintf(text, sizeof text, "%5d/%-5d %5.1f %% [%5.1f, %5.1f]", k, n,
-                n > 0 ? 100.0 * k / n : 0.0, 100.0 * wilson.low, 100.0 * wilson.high);
-  std::string out = text;
-  if (rate.by_cluster) {
-    std::snprintf(text, sizeof text, "  by round [%5.1f, %5.1f]", 100.0 * rate.by_cluster->low,
-                  100.0 * rate.by_cluster->high);
-    out += text;
-  }
-  return out;
+  std::snprintf(text, sizeof text, "%5d/%-5d %5.1f %% [%5.1f, %5.1f]%s", k, n,
+                n > 0 ? 100.0 * k / n : 0.0, 100.0 * interval.low, 100.0 * interval.high,
+                rate.by_cluster ? " by rounds" : "");
+  return text;
 }
 
 std::string SpreadText(const std::optional<Spread>& spread) {

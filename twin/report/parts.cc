@@ -42,8 +42,8 @@ std::string GalleryCard(const ShownAttempt& attempt, std::size_t index, int scen
 std::string RateMark(const Rate& rate) {
   const auto [k, n] = rate.counts;
   if (n == 0) return "";
-  const ShareInterval wilson = Wilson95(k, n);
-  return IntervalMarkSvg(static_cast<double>(k) / n, wilson.low, wilson.high);
+  const ShareInterval interval = Interval95(rate);
+  return IntervalMarkSvg(static_cast<double>(k) / n, interval.low, interval.high);
 }
 
 std::string RateCard(const std::string& label, const Rate& rate, const Pointer& at) {

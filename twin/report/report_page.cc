@@ -61,8 +61,8 @@ std::string PictureHtml(const KeptForReport& kept) {
 
 std::string Footer(const ReportInput& input, const KeptForReport& kept) {
   constexpr const char* kIntervals =
-      " Intervals are Wilson's; those by rounds are a bootstrap over rounds. Numbers that stand in "
-      "summary.json say where. ";
+      " Intervals are Wilson's, those by rounds of the number of independent attempts that all of "
+      "them are worth (Korn and Graubard 1998). Numbers that stand in summary.json say where. ";
   std::string out = "<footer><p>";
   const bool believed = input.is_round && !input.result.records.front().summary.success;
   out += believed ? "The cell of this round has no truth: what was placed is what the picking "

@@ -29,13 +29,13 @@ IntervalSeries TubesLeftSeries(const VariantSummary& variant) {
   series.name = variant.name;
   for (const TubesLeftSummary& row : variant.by_tubes_left) {
     const auto [k, n] = row.success.counts;
-    const ShareInterval wilson = Wilson95(k, n);
+    const ShareInterval interval = Interval95(row.success);
     const double share = static_cast<double>(k) / n;
-    series.points.push_back({row.tubes_left, share, wilson.low, wilson.high,
+    series.points.push_back({row.tubes_left, share, interval.low, interval.high,
                              series.name + ", " + std::to_string(row.tubes_left) +
                                  " left: " + std::to_string(k) + " of " + std::to_string(n) +
-                                 ", 95 % " + Fixed(100.0 * wilson.low, 1) + " to " +
-                                 Fixed(100.0 * wilson.high, 1) + " %"});
+                                 ", 95 % " + Fixed(100.0 * interval.low, 1) + " to " +
+                                 Fixed(100.0 * interval.high, 1) + " %"});
   }
   return series;
 }

@@ -139,14 +139,10 @@ std::string PercentHtml(const Rate& rate, const Pointer& at) {
 std::string RateDetailHtml(const Rate& rate, const Pointer& at) {
   const auto [k, n] = rate.counts;
   if (n == 0) return kDash;
-  std::string out = CountHtml(k, at / "k") + " of " + CountHtml(n, at / "n") +
-                    ", 95&nbsp;% interval " + IntervalHtml(Wilson95(k, n), at / "wilson95");
-  // A bootstrap over rounds that all agree is a point and says nothing (see ClusterBootstrap95).
-  if (rate.by_cluster && rate.by_cluster->low != rate.by_cluster->high) {
-    out += " <span class=\"nowrap\">(by rounds " +
-           IntervalHtml(*rate.by_cluster, at / "cluster95") + ")</span>";
-  }
-  return out;
+  const bool by_rounds = rate.by_cluster.has_value();
+  return CountHtml(k, at / "k") + " of " + CountHtml(n, at / "n") + ", 95&nbsp;% interval " +
+         (by_rounds ? "by rounds " : "") +
+         IntervalHtml(Interval95(rate), at / (by_rounds ? "cluster95" : "wilson95"));
 }
 
 std::string RateHtml(const Rate& rate, const Pointer& at) {

@@ -53,7 +53,8 @@ std::string FixedHtml(double value, const Pointer& at, int digits);
 /// A dash where there is no value.
 std::string FixedHtml(const std::optional<double>& value, const Pointer& at, int digits);
 
-/// A rate: "93.3 %", and "42 of 45, 95 % interval 82.1 to 97.7 %". A dash for n = 0.
+/// A rate: "93.3 %", and "42 of 45, 95 % interval by rounds 82.1 to 97.7 %", Wilson's where there
+/// is none by rounds. A dash for n = 0.
 std::string PercentHtml(const Rate& rate, const Pointer& at);
 std::string RateDetailHtml(const Rate& rate, const Pointer& at);
 /// Both behind each other, the second in small.

@@ -12,10 +12,16 @@ Json IntervalJson(const ShareInterval& interval) {
 
 }  // namespace
 
-Rate RateOf(const std::vector<Counts>& clusters, const std::optional<RandomStream>& random) {
+Rate RateOf(const std::vector<Counts>& clusters, Trials trials) {
   Rate rate{Total(clusters), std::nullopt};
-  if (random) rate.by_cluster = ClusterBootstrap95(clusters, *random);
+  if (trials == Trials::kClustered && clusters.size() > 1) {
+    rate.by_cluster = ClusterWilson95(clusters);
+  }
   return rate;
+}
+
+ShareInterval Interval95(const Rate& rate) {
+  return rate.by_cluster ? *rate.by_cluster : Wilson95(rate.counts.k, rate.counts.n);
 }
 
 Json ToJson(Counts counts) {

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
 #include "models/base/error.h"
@@ -55,21 +56,28 @@ Counts Total(const std::vector<Counts>& clusters) {
   return sum;
 }
 
-ShareInterval ClusterBootstrap95(const std::vector<Counts>& clusters, RandomStream random,
-                                 int resamples) {
-  const Interval found = Bootstrap95(
-      static_cast<int>(clusters.size()),
-      [&](const std::vector<int>& drawn) {
-        double k = 0.0, n = 0.0;
-        for (const int i : drawn) {
-          k += clusters[i].k;
-          n += clusters[i].n;
-        }
-        return k / n;  // No trial: not a number, left out.
-      },
-      random, resamples);
-  if (!std::isfinite(found.low)) return {};
-  return {found.low, found.high};
+ShareInterval ClusterWilson95(const std::vector<Counts>& clusters) {
+  const Counts all = Total(clusters);
+  if (all.n == 0) return {};
+  const double share = static_cast<double>(all.k) / all.n;
+  int counted = 0;
+  double squares = 0.0;
+  for (const Counts& cluster : clusters) {
+    TT_CHECK(0 <= cluster.k && cluster.k <= cluster.n);
+    if (cluster.n == 0) continue;
+    ++counted;
+    const double off = cluster.k - share * cluster.n;
+    squares += off * off;
+  }
+  if (counted < 2 || all.k == 0 || all.k == all.n) return Wilson95OfShare(share, counted);
+  // Variances of the share, both times n^2.
+  const double between = squares * counted / (counted - 1.0);
+  const double independent = share * (1.0 - share) * all.n;
+  const double worth = all.n / std::max(1.0, between / independent);
+  static const double z = boost::math::quantile(boost::math::normal(), 1.0 - kTail);
+  const boost::math::students_t_distribution<double> student(counted - 1);
+  const double t = boost::math::quantile(boost::math::complement(student, kTail));
+  return Wilson95OfShare(share, worth * (z / t) * (z / t));
 }
 
 Interval Bootstrap95(int count, const std::function<double(const std::vector<int>&)>& statistic,

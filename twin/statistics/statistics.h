@@ -18,12 +18,17 @@ struct Counts {
 /// Sum over clusters.
 Counts Total(const std::vector<Counts>& clusters);
 
-/// 95 % percentile interval of sum k / sum n by drawing whole clusters with replacement (Efron and
-/// Tibshirani 1993, 13.3), so that dependence within a cluster widens it. `random` is taken by
-/// value: same stream, same interval. Says nothing of its own when all clusters agree (the interval
-/// is a point): read the Wilson interval then. No trial at all: [0, 1].
-ShareInterval ClusterBootstrap95(const std::vector<Counts>& clusters, RandomStream random,
-                                 int resamples = 2000);
+/// 95 % interval of the chance of success, sum k / sum n, where trials of one cluster depend on
+/// each other and clusters do not: Wilson's interval (1927) of the number of independent trials
+/// that all of them are worth, n / deff. The design effect deff (Kish 1965) is the variance of the
+/// ratio between the clusters over that of as many independent trials, at least 1; n / deff is
+/// multiplied by (z / t)^2, t with one degree of freedom fewer than clusters (Korn and Graubard
+/// 1998, Survey Methodology 24, 193-201). Where all trials succeed, or none, nothing can be
+/// estimated: then a whole cluster counts as one trial (all its trials agree), so that 280 of 280
+/// in 40 rounds say [91.2, 100] and not a point. Of beta-binomial rounds of seven it covers 92 % or
+/// more up to a correlation of 0.3 within rounds (tests/statistics), and 89 % at 0.5 near a share
+/// of 0.95. Clusters without a trial are left out. No trial at all: [0, 1].
+ShareInterval ClusterWilson95(const std::vector<Counts>& clusters);
 
 /// Interval of a number of any size.
 struct Interval {

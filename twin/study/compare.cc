@@ -83,15 +83,7 @@ MetricDifference CompareMetric(const Metric& metric, const Sides& sides,
                               : [kind = metric.kind](const Drawn& drawn, const auto& side) {
                                   return MiddleOf(kind, drawn, side);
                                 };
-  const auto side_of = [&](const std::vector<RoundFacts>& rounds, const char* name) {
-    MetricValue value = ValueOf(metric, rounds, std::nullopt);
-    if (metric.kind != Metric::Kind::kRate) return value;
-    std::vector<Counts> counts;
-    for (const MetricSample& sample : SamplesOf(metric, rounds)) counts.push_back(sample.counts);
-    value.rate = RateOf(counts, random.Fork(name));
-    return value;
-  };
-  return {side_of(sides.a, "a"), side_of(sides.b, "b"),
+  return {ValueOf(metric, sides.a), ValueOf(metric, sides.b),
           DifferenceOf(SamplesOf(metric, sides.a), SamplesOf(metric, sides.b), measure, random)};
 }
 

@@ -19,16 +19,12 @@ constexpr const char* kSets[] = {"A", "B"};
 struct VariantData {
   std::vector<RoundFacts> rounds;
   Counts emptied;
-  RandomStream random;
 };
 
 VariantData DataOf(const CampaignResult& result, const std::string& name) {
   for (int variant = 0; variant < result.variants(); ++variant) {
     if (result.VariantName(variant) != name) continue;
-    VariantData out{FactsOf(result.OfVariant(variant)),
-                    {},
-                    RandomStream(static_cast<std::uint64_t>(result.identity.seed),
-                                 static_cast<std::uint64_t>(variant), "reproduction")};
+    VariantData out{FactsOf(result.OfVariant(variant)), {}};
     for (const RoundFacts& round : out.rounds) {
       ++out.emptied.n;
       out.emptied.k += round.record->summary.emptied ? 1 : 0;
@@ -45,10 +41,7 @@ using Times = AttemptReport::ComputeTime;
 using TimeOf = double (*)(const Times&);
 
 ReproductionCell Share(const VariantData& data, const Test& counted, const Test& good) {
-  const Metric metric = AttemptRate("", "", counted, good);
-  std::vector<Counts> counts;
-  for (const RoundFacts& round : data.rounds) counts.push_back(metric.reduce(round).counts);
-  return RateOf(counts, data.random);
+  return ValueOf(AttemptRate("", "", counted, good), data.rounds).rate;
 }
 
 ReproductionCell Share(Counts counts) { return Rate{counts, std::nullopt}; }
@@ -87,8 +80,8 @@ Test Left(int tubes, const Test& test) {
 
 std::optional<Interval> IntervalOf(const ReproductionCell& cell) {
   if (const auto* rate = std::get_if<Rate>(&cell); rate != nullptr && rate->counts.n > 0) {
-    const ShareInterval wilson = Wilson95(rate->counts.k, rate->counts.n);
-    return Interval{wilson.low, wilson.high};
+    const ShareInterval share = Interval95(*rate);
+    return Interval{share.low, share.high};
   }
   if (const auto* time = std::get_if<MeanTime>(&cell)) return time->mean95_s;
   return std::nullopt;

@@ -18,9 +18,9 @@ std::string CellText(const ReproductionCell& cell) {
   if (rate == nullptr) return "-";
   const auto [k, n] = rate->counts;
   if (n == 0) return "- (0)";
-  const ShareInterval wilson = Wilson95(k, n);
+  const ShareInterval interval = Interval95(*rate);
   std::snprintf(text, sizeof text, "%d/%d = %.0f %% [%.0f, %.0f]", k, n, 100.0 * k / n,
-                100.0 * wilson.low, 100.0 * wilson.high);
+                100.0 * interval.low, 100.0 * interval.high);
   return text;
 }
 
@@ -71,8 +71,9 @@ std::string ReproductionText(const Reproduction& reproduction) {
   std::string out = "# Tables 3 to 9 of the 2020 paper beside the twin\n\n" +
                     std::to_string(reproduction.rounds) + " rounds of each set and profile, seed " +
                     std::to_string(reproduction.seed) +
-                    ". Shares by truth with Wilson's 95 % interval, times as mean ± standard "
-                    "deviation with Student's 95 % interval of the mean.\n";
+                    ". Shares by truth with 95 % intervals, ours by rounds (Wilson's of the "
+                    "effective sample size), the paper's and those of bins Wilson's; times as mean "
+                    "± standard deviation with Student's 95 % interval of the mean.\n";
   std::string apart;
   for (const ReproductionTable& table : reproduction.tables) {
     const std::string number = std::to_string(table.number);

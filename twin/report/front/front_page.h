@@ -17,7 +17,7 @@ std::string FrontPage(const ReportInput& input, const std::string& cards);
 /// The median pick as a Gantt chart, with the spread of every phase over all picks.
 std::string CycleTime(const ReportInput& input);
 
-/// Every failure class with rate, Wilson's interval and its share of the time.
+/// Every failure class with rate, interval by rounds and its share of the time.
 std::string FailureModes(const ReportInput& input);
 
 /// How wide the interval is now and would be with twice and four times the rounds.

@@ -104,6 +104,15 @@ std::string FailureWords(const std::string& failure) {
   return found == kWords.end() ? "" : found->second;
 }
 
+/// The rate of attempts that ended as that failure, by rounds; of a name that none has, 0.
+Rate FailureRate(const VariantRounds& variant, const std::string& failure) {
+  const auto any = [](const AttemptFacts&) { return true; };
+  const auto as_that = [&](const AttemptFacts& facts) {
+    return !facts.failure.empty() && facts.failure == failure;
+  };
+  return ValueOf(AttemptRate("", "", any, as_that), variant.rounds).rate;
+}
+
 std::string EndsText(const ReportInput& input, const VariantSummary& variant) {
   if (input.is_round) return "";  // It stands at the head.
   std::string ends;
@@ -160,7 +169,7 @@ std::string FailureModes(const ReportInput& input) {
     const int attempts = variant.summary->totals.attempts;
     std::string rows;
     for (const auto& [failure, count] : variant.summary->failures) {
-      const Rate rate{{count, attempts}, std::nullopt};
+      const Rate rate = FailureRate(variant, failure);
       double time_s = 0.0;
       for (const auto& one : shares ? shares->failures : std::vector<TimeShares::Failure>()) {
         if (one.name == failure) time_s = one.time_s;
@@ -175,7 +184,7 @@ std::string FailureModes(const ReportInput& input) {
            (rows.empty()
                 ? "<p><b class=\"good\">No attempt failed</b> of " + std::to_string(attempts) +
                       ": the rate of failures is below " +
-                      Fixed(100.0 * Wilson95(0, std::max(0, attempts)).high, 1) +
+                      Fixed(100.0 * Interval95(FailureRate(variant, "")).high, 1) +
                       "&nbsp;% (95&nbsp;%).</p>\n"
                 : "<div class=\"wide\"><table><tr><th>an attempt ended as</th><th>rate, 95&nbsp;% "
                   "interval</th><th class=\"n\">of the time</th></tr>\n" +

@@ -69,8 +69,7 @@ Metric RoundMedian(const std::string& name, const std::string& label, const std:
   return metric;
 }
 
-MetricValue ValueOf(const Metric& metric, const std::vector<RoundFacts>& rounds,
-                    const std::optional<RandomStream>& random) {
+MetricValue ValueOf(const Metric& metric, const std::vector<RoundFacts>& rounds, bool mixed) {
   std::vector<Counts> counts;
   std::vector<double> values;
   for (const RoundFacts& round : rounds) {
@@ -80,9 +79,8 @@ MetricValue ValueOf(const Metric& metric, const std::vector<RoundFacts>& rounds,
   }
   MetricValue out{&metric, {}, OptionalSpread(values)};
   if (metric.kind != Metric::Kind::kRate) return out;
-  std::optional<RandomStream> own;
-  if (random && !metric.per_round) own = random->Fork(metric.stream);
-  out.rate = RateOf(counts, own);
+  const bool independent = mixed || metric.per_round;
+  out.rate = RateOf(counts, independent ? Trials::kIndependent : Trials::kClustered);
   return out;
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "models/base/json_fwd.h"
-#include "models/base/random.h"
 #include "twin/round/records/attempt_facts.h"
 #include "twin/statistics/rate.h"
 
@@ -23,7 +22,7 @@ struct MetricSample {
 /// AttemptRate() and its like.
 struct Metric {
   enum class Kind {
-    kRate,    ///< k of n, with Wilson's interval and, over attempts, a bootstrap over rounds.
+    kRate,    ///< k of n, with Wilson's interval and, over attempts, the interval by rounds.
     kMean,    ///< Of all rounds' values; files hold the whole spread.
     kMedian,  ///< Likewise.
   };
@@ -42,7 +41,7 @@ struct Metric {
   Place place = Place::kMeasure;
   std::string unit = "";      ///< Of values: "s", "N"; empty: a plain number.
   std::string compared = "";  ///< Its key in comparisons; empty: it is not compared.
-  std::string stream = "";    ///< Name of the random stream of its bootstrap; empty: its name.
+  std::string stream = "";    ///< Name of the random stream of its comparisons; empty: its name.
 };
 
 using AttemptTest = std::function<bool(const AttemptFacts&)>;
@@ -67,10 +66,10 @@ struct MetricValue {
   std::optional<Spread> spread;  ///< Of the others; nothing: no round had a value.
 };
 
-/// The value of a metric over the rounds. With `random` rates over attempts get their interval by
-/// rounds, from a stream of the metric's own.
+/// The value of a metric over the rounds. Rates over attempts get their interval by rounds, unless
+/// the rounds are of several variants and `mixed` says so: then Wilson's alone.
 MetricValue ValueOf(const Metric& metric, const std::vector<RoundFacts>& rounds,
-                    const std::optional<RandomStream>& random);
+                    bool mixed = false);
 
 /// Puts the value at the metric's place in a summary.json.
 void AddValue(const MetricValue& value, Json& summary);
