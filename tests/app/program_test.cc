@@ -167,6 +167,8 @@ TEST_CASE("One tube is picked and placed, and the same seed gives the same rows"
   CHECK(row["truth"]["held"] == 1);
   CHECK(row["truth"]["placed_ids"] == Json::array({4}));  // The file's own id.
   CHECK(row["truth"]["placement_error_mm"].get<double>() < 10.0);
+  const bool turned = row["truth"]["placement_error_deg"].get<double>() > 10.0;
+  CHECK(row["in_tolerance"] == !turned);
 }
 
 }  // namespace

@@ -41,11 +41,12 @@ inline AttemptRecord FakeAttempt(int number, AttemptOutcome outcome, bool succes
   attempt.attempt = number;
   attempt.used_simulator = sim_s > 31.0;
   attempt.outcome = outcome;
-  attempt.success = success;
+  attempt.success = attempt.in_tolerance = success;
   attempt.sim_s = AttemptReport::SimTime{5.0, sim_s - 8.0, 2.0, 1.0};
   attempt.truth.emplace();
   for (int i = 0; i < placed; ++i) attempt.truth->placed_ids.push_back(i);
   for (int i = 0; i < outside; ++i) attempt.truth->outside_ids.push_back(100 + i);
+  if (success) attempt.truth->placement_error_mm = attempt.truth->placement_error_deg = 7.5;
   return attempt;
 }
 
@@ -55,6 +56,7 @@ inline RoundSummary FakeSummary(int start, int placed, int outside, double sim_s
   summary.placed = placed;
   summary.outside = outside;
   summary.success = Counts{0, 0};
+  summary.tolerance = PlacementTolerance();
   summary.emptied = placed == start;
   summary.end = RoundEnd::kEmpty;
   summary.sim_s = sim_s;

@@ -193,6 +193,14 @@ TEST_CASE(
   CHECK(variant["success"]["n"] == 6);
   CHECK(variant["first_attempt"]["k"] == 1);
   CHECK(variant["first_attempt"]["n"] == 2);
+  CHECK(variant["first_attempt_of_start"]["k"] == 1);
+  CHECK(variant["first_attempt_of_start"]["n"] == 9);
+  CHECK(variant["in_tolerance"]["k"] == 2);
+  CHECK(variant["in_tolerance"]["n"] == 6);
+  CHECK(variant["in_tolerance_at"]["5"]["k"] == 0);
+  CHECK(variant["in_tolerance_at"]["10"]["k"] == 2);
+  CHECK(variant["success"].contains("cluster95"));
+  CHECK_FALSE(summary["success"].contains("cluster95"));  // Of the mix of variants.
   CHECK(variant["emptied"]["k"] == 0);
   CHECK(variant["emptied"]["n"] == 3);
   CHECK(variant["rounds"] == 3);
@@ -211,6 +219,32 @@ TEST_CASE(
   CHECK(variant["sim_s"]["placed_tube"]["median"] == 45.0);
   CHECK(summary["tubes_start"] == 9);
   CHECK(summary["placed"] == 4);
+}
+
+TEST_CASE("rows of before tolerances are read, merged as they were and told as not known") {
+  const TemporaryFolder folder;
+  RunAll(FakeCampaign(3), folder / "now");
+  WriteJsonFile(ReadJsonFile(folder / "now/campaign.json"), folder / "old/campaign.json");
+  const std::string shard = "/shard-00000-of-00001.jsonl";
+  const std::string mark = ReadCampaignIdentity(folder / "old").fingerprint();
+  std::istringstream lines(ReadFile(folder / ("now" + shard)));
+  std::string old;
+  for (std::string line; std::getline(lines, line);) {
+    Json json = ParseCheckedLine(line);
+    if (json.contains("campaign")) json["campaign"] = mark;
+    if (json.contains("picks")) {
+      json["summary"].erase("tolerance");
+      for (Json& row : json["picks"]) row.erase("in_tolerance");
+    }
+    old += CheckedLine(json) + "\n";
+  }
+  WriteFileAtomically(folder / ("old" + shard), old);
+  WriteMerged(ReadShards({folder / "old"}), folder / "merged");
+  CHECK_THAT(ReadFile(folder / "merged/picks.jsonl"), !Contains("in_tolerance"));
+  const Json summary = ReadJsonFile(folder / "merged/summary.json");
+  CHECK(summary["in_tolerance"]["n"] == 0);
+  CHECK(summary["first_attempt_of_start"]["n"] == 9);
+  CHECK(ReadCampaignResult(folder / "merged").records.size() == 3);
 }
 
 TEST_CASE(

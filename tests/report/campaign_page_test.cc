@@ -44,7 +44,8 @@ TEST_CASE("all numbers of a campaign's page are those of summary.json") {
   for (const char* pointer :
        {"/variants/1/rounds", "/variants/1/success/cluster95/0",
         "/variants/0/by_tubes_left/2/success/cluster95/1", "/variants/0/by_motion/0/success/n",
-        "/variants/1/sim_s/placed_tube/p95"}) {
+        "/variants/1/sim_s/placed_tube/p95", "/variants/0/in_tolerance/cluster95/0",
+        "/variants/0/in_tolerance_at/50/k", "/variants/1/first_attempt_of_start/n"}) {
     INFO(pointer);
     CHECK(shown.count(pointer) == 1);
   }

@@ -16,14 +16,14 @@ using Catch::Matchers::Contains;
 
 /// A row with everything in it, its digits as no shorter number gives them.
 const char* const kFullRow =
-    R"({"round":2,"variant":1,"attempt":3,"tubes_in_bin":4,"target":2,"class":"strong","motion":{"name":"tip+","waypoints_m":[[0.0,0.0,0.0],[0.1,-0.2,0.30000000000000004]],"rotations_wxyz":[[1.0,0.0,0.0,0.0],[0.9659258262890683,0.25881904510252074,0.0,0.0]],"pivot_m":[0.1,0.2,0.0125]},"grasp":{"p_m":[0.12345678901234566,0.1,0.02],"q_wxyz":[0.0,0.7071067811865476,0.7071067811865475,-1e-17],"at_m":0.25,"opening_m":0.04},"used_simulator":true,"prediction":{"displacement_m":0.1,"extra_probability":0.2,"samples":5},"detection":{"outcome":"several","force_N":1.1,"torque_Nm":[0.1,0.0,-0.1],"at_s":12.5},"resolution":{"used":true,"strategy":"plus45","outcome":"one"},"nudges":[{"tube":3,"direction":[1.0,0.0,0.0],"travel_m":0.05,"contact":true,"press_N":3.1,"stopped":false,"rejected":""}],"outcome":"placed","reason":"","success":true,"sim_s":{"scan":5.1,"move":20.2,"weigh":1.3,"settle":0.4,"total":26.999999999999996},"truth":{"held":2,"placed_ids":[1,4],"outside_ids":[],"placement_error_mm":3.25,"placement_error_deg":0.5}})";
+    R"({"round":2,"variant":1,"attempt":3,"tubes_in_bin":4,"target":2,"class":"strong","motion":{"name":"tip+","waypoints_m":[[0.0,0.0,0.0],[0.1,-0.2,0.30000000000000004]],"rotations_wxyz":[[1.0,0.0,0.0,0.0],[0.9659258262890683,0.25881904510252074,0.0,0.0]],"pivot_m":[0.1,0.2,0.0125]},"grasp":{"p_m":[0.12345678901234566,0.1,0.02],"q_wxyz":[0.0,0.7071067811865476,0.7071067811865475,-1e-17],"at_m":0.25,"opening_m":0.04},"used_simulator":true,"prediction":{"displacement_m":0.1,"extra_probability":0.2,"samples":5},"detection":{"outcome":"several","force_N":1.1,"torque_Nm":[0.1,0.0,-0.1],"at_s":12.5},"resolution":{"used":true,"strategy":"plus45","outcome":"one"},"nudges":[{"tube":3,"direction":[1.0,0.0,0.0],"travel_m":0.05,"contact":true,"press_N":3.1,"stopped":false,"rejected":""}],"outcome":"placed","reason":"","success":true,"in_tolerance":true,"sim_s":{"scan":5.1,"move":20.2,"weigh":1.3,"settle":0.4,"total":26.999999999999996},"truth":{"held":2,"placed_ids":[1,4],"outside_ids":[],"placement_error_mm":3.25,"placement_error_deg":0.5}})";
 
 /// Of a round whose process crashed.
 const char* const kCrashedRow =
-    R"({"round":0,"attempt":1,"tubes_in_bin":null,"target":null,"class":null,"motion":null,"grasp":null,"used_simulator":false,"prediction":null,"detection":null,"resolution":{"used":false,"strategy":null,"outcome":null},"nudges":[],"outcome":"fault","reason":"the round crashed","success":false,"sim_s":null,"truth":null})";
+    R"({"round":0,"attempt":1,"tubes_in_bin":null,"target":null,"class":null,"motion":null,"grasp":null,"used_simulator":false,"prediction":null,"detection":null,"resolution":{"used":false,"strategy":null,"outcome":null},"nudges":[],"outcome":"fault","reason":"the round crashed","success":false,"in_tolerance":false,"sim_s":null,"truth":null})";
 
 const char* const kSummary =
-    R"({"schema":"tubetwin/summary/1","tubes_start":7,"placed_before":1,"placed":6,"attempts":9,"success":{"k":5,"n":9},"first_attempt":{"k":4,"n":5},"emptied":false,"end_reason":"no_plan","end_detail":"tube 3: no candidate","placed_believed":6,"outside":1,"dropped":1,"sim_s":412.25,"sim_s_per_pick":82.45})";
+    R"({"schema":"tubetwin/summary/1","tubes_start":7,"placed_before":1,"placed":6,"attempts":9,"success":{"k":5,"n":9},"first_attempt":{"k":4,"n":5},"tolerance":{"position_mm":20.0,"yaw_deg":7.5},"emptied":false,"end_reason":"no_plan","end_detail":"tube 3: no candidate","placed_believed":6,"outside":1,"dropped":1,"sim_s":412.25,"sim_s_per_pick":82.45})";
 
 AttemptRecord Read(const std::string& row) {
   const Json json = Json::parse(row);
@@ -60,6 +60,31 @@ TEST_CASE("a row of earlier versions, without prediction and nudges, is read", "
   CHECK_FALSE(attempt.prediction);
   CHECK(attempt.nudges.empty());
   CHECK(attempt.chosen->motion == "tip+");
+}
+
+TEST_CASE("a row and a summary of before tolerances are read, told again as they were, not guessed",
+          "[unit]") {
+  std::string row = kFullRow;
+  const std::string key = "\"in_tolerance\":true,";
+  row.erase(row.find(key), key.size());
+  CHECK_FALSE(Read(row).in_tolerance);
+  CHECK(ToJson(Read(row), {2, 1}).dump() == row);
+  Json summary = Json::parse(kSummary);
+  summary.erase("tolerance");
+  CHECK_FALSE(SummaryFromJson(JsonView(summary, "summary.json")).tolerance);
+  RoundRecord record;
+  record.attempts = {Read(row)};
+  const Json told = RoundSummaryJson(record);
+  CHECK(told["in_tolerance"]["n"] == 0);
+  CHECK(told["in_tolerance_at"]["50"]["n"] == 0);
+}
+
+TEST_CASE("where nobody knows success, nobody knows the tolerance", "[unit]") {
+  AttemptRecord believed = Read(kFullRow);
+  believed.success = believed.in_tolerance = std::nullopt;
+  believed.truth = std::nullopt;
+  CHECK(ToJson(believed, RowPlace())["in_tolerance"].is_null());
+  CHECK_THAT(Refusal("\"in_tolerance\":true", "\"in_tolerance\":1"), Contains("in_tolerance"));
 }
 
 TEST_CASE("phases of a row come back behind the times, and rows without them have none", "[unit]") {

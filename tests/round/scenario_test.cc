@@ -30,6 +30,22 @@ TEST_CASE("The paper's profile nudges no tube, whatever a layer says", "[unit]")
                     Catch::Matchers::Contains("planner.nudges is 1; only 0 is allowed"));
 }
 
+TEST_CASE("The tolerance of success has defaults, and bad values are refused by what is allowed",
+          "[unit]") {
+  ConfigSource none;
+  CHECK(ReadScenario(none).success.position_mm == 20.0);
+  CHECK(ReadScenario(none).success.yaw_deg == 10.0);
+  const auto refused = [](const std::string& text, const std::string& said) {
+    ConfigSource source;
+    source.AddText(text, "S.toml");
+    CHECK_THROWS_WITH(ReadScenario(source), Catch::Matchers::Contains(said));
+  };
+  refused("[success]\nposition_mm = -1\n", "S.toml:2:15: success.position_mm: is -1, allowed");
+  refused("[success]\nyaw_deg = 91\n", "S.toml:2:11: success.yaw_deg: is 91, allowed");
+  refused("[success]\nyaw_deg = \"ten\"\n", "success.yaw_deg");
+  refused("[success]\nposition_m = 0.02\n", "nearest known is 'success.position_mm'");
+}
+
 TEST_CASE("The profile of the command line wins, and the default is best", "[unit]") {
   ConfigSource source;
   CHECK(ReadScenario(source).perception.profile == "best");

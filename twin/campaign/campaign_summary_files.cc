@@ -140,7 +140,10 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignManifest& 
     out += "  parts per hour    " + ToText(manifest.compute_s[i].parts_per_hour) +
            "; without computing " + ToText(variant.parts_per_hour) + "\n";
     out += "  success           " + RateText(Named(variant.metrics, "success").rate) + "\n";
+    out += "  in tolerance      " + RateText(Named(variant.metrics, "in_tolerance").rate) + "\n";
     out += "  at first attempt  " + RateText(Named(variant.metrics, "first_attempt").rate) + "\n";
+    out += "  of all at start   " +
+           RateText(Named(variant.metrics, "first_attempt_of_start").rate) + "\n";
     out += "  bins emptied      " + RateText(Named(variant.metrics, "emptied").rate) + "\n";
     for (const TubesLeftSummary& row : variant.by_tubes_left) {
       char head[32];

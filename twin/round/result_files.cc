@@ -83,7 +83,9 @@ Json RoundSummaryJson(const RoundRecord& record, const std::vector<Metric>& metr
   Json out = ToJson(record.summary);
   const std::vector<RoundFacts> facts = {FactsOf(record)};
   for (const Metric& metric : metrics) {
-    if (metric.place == Metric::Place::kMeasure) AddValue(ValueOf(metric, facts), out);
+    // Some of the headline the summary tells itself, and needs no attempt for it.
+    const bool told = metric.place == Metric::Place::kHeadline && !out.contains(metric.name);
+    if (told || metric.place == Metric::Place::kMeasure) AddValue(ValueOf(metric, facts), out);
   }
   out["parts_per_hour"] = ToJson(PartsPerHourOf(facts, HourOf::kCell, {}));
   return out;

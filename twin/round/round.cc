@@ -204,7 +204,7 @@ RoundResult RunRound(const Scenario& given, const RoundOptions& options) {
   twin.cell().safety = ScenarioSafety(scenario);
   WriteFileAtomically((out / "cell.xml").string(), twin.ModelXml());
 
-  TwinRoundRecorder recorder(twin, pile, std::move(visuals), options);
+  TwinRoundRecorder recorder(twin, pile, scenario.success, std::move(visuals), options);
   recorder.folder = folder.get();
   recorder.on_several = [&](const AttemptCheckpoint& state, const ScorerState& scorer) {
     twin.WakeAll();  // Whether it is stored or not: both go on alike.

@@ -116,11 +116,12 @@ void RoundRecorder::SaveFailure() {
 }
 
 TwinRoundRecorder::TwinRoundRecorder(TwinCell& twin, const Pile& pile,
+                                     const PlacementTolerance& tolerance,
                                      std::vector<Recording::Visual> visuals,
                                      const RoundOptions& options)
-    : RoundRecorder(
-          RoundScorer(twin, twin.cell().model.layout, static_cast<int>(pile.tubes.size())),
-          options),
+    : RoundRecorder(RoundScorer(twin, twin.cell().model.layout, static_cast<int>(pile.tubes.size()),
+                                tolerance),
+                    options),
       twin_(twin) {
   recording_.cell_xml = twin.ModelXml();
   recording_.bin = pile.bin;

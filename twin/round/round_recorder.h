@@ -73,8 +73,8 @@ class RoundRecorder : public CycleObserver {
 /// after an attempt's end, when what it let go of has come to rest; the pipeline goes on meanwhile.
 class TwinRoundRecorder : public RoundRecorder {
  public:
-  TwinRoundRecorder(TwinCell& twin, const Pile& pile, std::vector<Recording::Visual> visuals,
-                    const RoundOptions& options);
+  TwinRoundRecorder(TwinCell& twin, const Pile& pile, const PlacementTolerance& tolerance,
+                    std::vector<Recording::Visual> visuals, const RoundOptions& options);
 
   void OnStep(const std::string& caption) override;
   void OnScene(const TubeScene& scene, const PickPlan* plan) override;

@@ -111,6 +111,7 @@ void Scenario::Visit(ConfigVisitor& v) {
   v.Section("evaluator", "physics roll-outs inside the planner", evaluator);
   v.Section("resolution", "when several tubes hang in the fingers", resolution);
   v.Section("cycle", "speeds, forces and waits of the pick cycle", cycle);
+  v.Section("success", "how well a placed tube must lie to count as in_tolerance", success);
   v.Section("part", "the part, for cell files", part);
   v.Section("calibration", "how the tools hang on the flange", calibration);
   v.Field("rate", "how many times as fast as the wall's the devices' clocks run (emulated ones)",

@@ -13,6 +13,7 @@
 #include "twin/render/recording.h"
 #include "twin/render/scan/scan_geometry.h"
 #include "twin/round/cell_config.h"
+#include "twin/round/records/tolerance.h"
 
 namespace tubetwin {
 
@@ -46,6 +47,7 @@ struct Scenario {
   EvaluatorConfig evaluator;
   ResolutionConfig resolution;
   CycleConfig cycle;
+  PlacementTolerance success;  ///< What `in_tolerance` means.
 
   /// The cell's own, where no pile says them: what lies in the bin, where tools hang, how fast the
   /// devices' clocks run against the wall's (emulated ones).

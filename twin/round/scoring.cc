@@ -5,7 +5,6 @@
 
 #include "models/base/error.h"
 #include "models/base/json.h"
-#include "planner/grasp/placement.h"
 #include "twin/round/records/json_fields.h"
 
 namespace tubetwin {
@@ -13,17 +12,23 @@ namespace {
 
 constexpr double kAtRest_m_s = 0.02;  // The physics' own creep stays far below.
 
-/// Angle between a tube and the tray's y axis, ends being equal, degrees.
-double YawErrorDeg(const Vector3& direction_T) {
-  const double angle = std::atan2(std::abs(direction_T.x()), std::abs(direction_T.y()));
-  return Degrees(angle);
-}
-
 bool Has(const std::vector<int>& ids, int id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
 }  // namespace
+
+double YawErrorDeg(const Polyline& centerline_T) {
+  constexpr int kSamples = 64;
+  const Polyline points = ResampleCount(centerline_T, kSamples);
+  Vector3 mean = Vector3::Zero();
+  for (const Vector3& p : points) mean += p / static_cast<double>(points.size());
+  Matrix3 covariance = Matrix3::Zero();
+  for (const Vector3& p : points) covariance += (p - mean) * (p - mean).transpose();
+  // Eigenvalues come in rising order.
+  const Vector3 axis = Eigen::SelfAdjointEigenSolver<Matrix3>(covariance).eigenvectors().col(2);
+  return Degrees(std::atan2(std::abs(axis.x()), std::abs(axis.y())));
+}
 
 TrayCount CountTray(const std::vector<Truth::Tube>& tubes, const TrayCount& before) {
   TrayCount now;
@@ -48,8 +53,12 @@ ScorerState ScorerStateFromJson(const JsonView& view) {
           IntegersFromJson(view.Field("outside_ids"))};
 }
 
-RoundScorer::RoundScorer(const TwinCell& cell, const CellLayout& layout, int tubes_start)
-    : truth_(cell), X_TB_(layout.X_BT.inverse()), tubes_start_(tubes_start) {}
+RoundScorer::RoundScorer(const TwinCell& cell, const CellLayout& layout, int tubes_start,
+                         const PlacementTolerance& tolerance)
+    : truth_(cell),
+      X_TB_(layout.X_BT.inverse()),
+      tolerance_(tolerance),
+      tubes_start_(tubes_start) {}
 
 void RoundScorer::Restore(const ScorerState& state) { before_ = now_ = state; }
 
@@ -72,13 +81,14 @@ void RoundScorer::AddTruth(const AttemptReport& report, AttemptRecord& record) {
     if (is_new && report.slot_centre_T) {
       const Vector3 off = X_TB_ * tube.centre_of_mass_B - *report.slot_centre_T;
       out.placement_error_mm = 1e3 * off.head<2>().norm();
-      out.placement_error_deg =
-          YawErrorDeg(PrincipalDirection(Transformed(X_TB_, tube.centerline_B)));
+      out.placement_error_deg = YawErrorDeg(Transformed(X_TB_, tube.centerline_B));
     }
   }
   out.placed_ids = tray.placed_ids;
   record.success = report.outcome == AttemptOutcome::kPlaced && added == 1 &&
                    out.outside_ids.size() <= now_.outside_ids.size();
+  record.in_tolerance = *record.success && out.placement_error_mm && out.placement_error_deg &&
+                        tolerance_->Holds(*out.placement_error_mm, *out.placement_error_deg);
   now_ = {tray, out.outside_ids};
   record.truth = std::move(out);
 }
@@ -116,6 +126,7 @@ RoundSummary RoundScorer::Summary(const RoundReport& report,
   out.first_attempt = rows.first_attempt;
   out.dropped = rows.dropped;
   if (truth_) out.success = rows.success;
+  out.tolerance = tolerance_;
   out.placed_believed = report.placed_believed;
   out.placed = truth_ ? static_cast<int>(now_.tray.placed_ids.size()) : report.placed_believed;
   out.outside = static_cast<int>(now_.outside_ids.size());

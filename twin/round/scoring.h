@@ -21,6 +21,11 @@ struct TrayCount {
 /// that was placed before and has not left the tray: a new neighbour may make it rock.
 TrayCount CountTray(const std::vector<Truth::Tube>& tubes, const TrayCount& before);
 
+/// Angle between the first principal axis of a tube's centerline and the yaw that its slot wants,
+/// the tray's y, seen from above: degrees, 0 to 90, as both ends are equal. `centerline_T`: two
+/// points or more. Of a bend whose two largest axes are equal it is as good as random.
+double YawErrorDeg(const Polyline& centerline_T);
+
 /// What the scoring of attempts to come depends on, and a stored round goes on with.
 struct ScorerState {
   TrayCount tray;
@@ -35,7 +40,8 @@ ScorerState ScorerStateFromJson(const JsonView& view);
 /// itself, that sees truth.
 class RoundScorer {
  public:
-  RoundScorer(const TwinCell& cell, const CellLayout& layout, int tubes_start);
+  RoundScorer(const TwinCell& cell, const CellLayout& layout, int tubes_start,
+              const PlacementTolerance& tolerance);
   RoundScorer() = default;  ///< Of a cell without truth.
 
   const ScorerState& state() const { return now_; }
@@ -57,7 +63,8 @@ class RoundScorer {
  private:
   std::optional<Truth> truth_;
   RigidTransform X_TB_ = RigidTransform::Identity();
-  std::optional<int> tubes_start_;  ///< Without truth: what the first look found.
+  std::optional<PlacementTolerance> tolerance_;  ///< Only with truth.
+  std::optional<int> tubes_start_;               ///< Without truth: what the first look found.
   int held_at_detection_ = 0;
   ScorerState before_;  ///< When the round began.
   ScorerState now_;

@@ -16,6 +16,14 @@ std::string FailureOf(const AttemptFacts& facts, bool crashed) {
 
 }  // namespace
 
+bool AttemptFacts::Within(double error_mm) const {
+  if (!success || !attempt->truth || !yaw_limit_deg) return false;
+  const AttemptTruth& truth = *attempt->truth;
+  if (!truth.placement_error_mm || !truth.placement_error_deg) return false;
+  return PlacementTolerance{error_mm, *yaw_limit_deg}.Holds(*truth.placement_error_mm,
+                                                            *truth.placement_error_deg);
+}
+
 RoundFacts FactsOf(const RoundRecord& record) {
   RoundFacts out{&record, {}};
   int placed_before = record.summary.placed_before;
@@ -27,6 +35,7 @@ RoundFacts FactsOf(const RoundRecord& record) {
     if (i < record.timings.size()) facts.timing = &record.timings[i];
     facts.first = attempt.attempt == 1;
     facts.success = attempt.success == true;
+    if (record.summary.tolerance) facts.yaw_limit_deg = record.summary.tolerance->yaw_deg;
     facts.tubes_left = record.summary.tubes_start - placed_before - outside_before;
     if (attempt.truth) {
       const auto placed = static_cast<int>(attempt.truth->placed_ids.size());

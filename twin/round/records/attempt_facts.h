@@ -13,6 +13,10 @@ struct AttemptFacts {
   const AttemptTiming* timing = nullptr;   ///< Likewise; null: nobody kept it.
   bool first = false;                      ///< The first attempt since a tube was placed.
   bool success = false;                    ///< Exactly one new tube on the tray, nothing outside.
+  /// Success with so small an error at most, and a yaw within its round's tolerance; false where
+  /// the rows do not say.
+  bool Within(double error_mm) const;
+  std::optional<double> yaw_limit_deg;  ///< Of its round; nothing: not known.
   int tubes_left = 0;  ///< In the bin before it: at the start, less placed and outside.
   int placed = 0;      ///< Tubes that came to count as placed; one for a success.
   int outside = 0;     ///< Tubes that it lost outside.

@@ -155,6 +155,11 @@ Json ToJson(const AttemptRecord& attempt, const RowPlace& place) {
   row["outcome"] = ToString(attempt.outcome);
   row["reason"] = attempt.reason;
   row["success"] = attempt.success ? Json(*attempt.success) : Json(nullptr);
+  if (attempt.in_tolerance) {
+    row["in_tolerance"] = *attempt.in_tolerance;
+  } else if (!attempt.success) {
+    row["in_tolerance"] = nullptr;  // Where success is known and this is not, an older row is told.
+  }
   row["sim_s"] = SimTimeJson(attempt.sim_s);
   if (attempt.phases_s) row["phases_s"] = ToJson(*attempt.phases_s);
   row["truth"] = TruthJson(attempt.truth);
@@ -187,6 +192,7 @@ AttemptRecord AttemptFromJson(const JsonView& row) {
   attempt.outcome = EnumFromJson(row.Field("outcome"), AttemptOutcome::kFault);
   attempt.reason = row.Field("reason").AsString();
   if (const auto success = FieldOrNull(row, "success")) attempt.success = success->AsBool();
+  if (const auto held = row.Optional("in_tolerance")) attempt.in_tolerance = held->AsBool();
   if (const auto times = FieldOrNull(row, "sim_s")) {
     attempt.sim_s.emplace();
     attempt.sim_s->scan = times->Field("scan").AsNumber();

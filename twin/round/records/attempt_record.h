@@ -40,7 +40,8 @@ struct AttemptTruth {
   std::optional<int> held;       ///< Tubes in the fingers at the decision; nothing: none was made.
   std::vector<int> placed_ids;   ///< On the tray so far, in the whole round.
   std::vector<int> outside_ids;  ///< Lost so far, in the whole round.
-  /// Of the tube that this attempt placed, against its slot.
+  /// Of the tube that this attempt placed: its centre of mass from its slot's centre, horizontally,
+  /// and its yaw from the slot's, modulo 180 degrees (YawErrorDeg).
   std::optional<double> placement_error_mm, placement_error_deg;
 };
 
@@ -60,6 +61,9 @@ struct AttemptRecord {
   AttemptOutcome outcome = AttemptOutcome::kFault;  ///< As the pipeline believes.
   std::string reason;                               ///< Of the outcome, for people.
   std::optional<bool> success;  ///< By truth: exactly one new tube on the tray, none outside.
+  /// Success, and the placed tube lies where it was meant to (PlacementTolerance); nothing: there
+  /// is no `success`, or an earlier version wrote the row.
+  std::optional<bool> in_tolerance;
   std::optional<AttemptReport::SimTime> sim_s;  ///< Nothing: the round crashed.
   /// The same time by what it was for; nothing: it crashed, or an earlier version wrote the row.
   std::optional<AttemptReport::Phases> phases_s;
@@ -67,8 +71,8 @@ struct AttemptRecord {
 };
 
 /// A row of picks.jsonl, and the record of one; the row's place is read by whoever looks for it.
-/// Rows of earlier versions, which lack prediction, nudges or phases, are read too. Throws
-/// Error(kBadData).
+/// Rows of earlier versions, which lack prediction, nudges, phases or tolerance, are read too.
+/// Throws Error(kBadData).
 Json ToJson(const AttemptRecord& attempt, const RowPlace& place);
 AttemptRecord AttemptFromJson(const JsonView& row);
 

@@ -27,7 +27,8 @@ struct Metric {
     kMedian,  ///< Likewise.
   };
   enum class Place {
-    kHeadline,  ///< A card at the head of pages, and a column of the table of variants.
+    kHeadline,  ///< A card at the head of pages, and a column of the table of variants; in every
+                ///< summary.json.
     kStep,      ///< The table of measures, and nothing in a single round's summary.json.
     kTime,      ///< The table of times, likewise.
     kMeasure,   ///< The table of measures; in every summary.json under its name.

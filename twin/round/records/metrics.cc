@@ -2,6 +2,8 @@
 
 #include "twin/round/records/metric.h"
 
+#include <algorithm>
+
 namespace tubetwin {
 namespace {
 
@@ -9,6 +11,7 @@ bool Any(const AttemptFacts&) { return true; }
 bool Scored(const AttemptFacts& facts) { return facts.attempt->success.has_value(); }
 bool Success(const AttemptFacts& facts) { return facts.success; }
 bool PlacedOne(const AttemptFacts& facts) { return facts.PlacedOne(); }
+bool ToleranceKnown(const AttemptFacts& facts) { return facts.attempt->in_tolerance.has_value(); }
 bool First(const AttemptFacts& facts) { return facts.first; }
 bool UsedSimulator(const AttemptFacts& facts) { return facts.attempt->used_simulator; }
 bool UsedResolution(const AttemptFacts& facts) { return facts.attempt->resolution_used; }
@@ -41,6 +44,48 @@ Metric FirstAttemptRate() {
   return Headline(
       AttemptRate("first_attempt", "Placed tubes that took one attempt", PlacedOne, First),
       "first");
+}
+
+/// Of all tubes that lay in the bin at the start, those that were placed by the first attempt after
+/// the tube before: what is left in the bin counts as missed.
+Metric FirstAttemptOfStartRate() {
+  Metric metric =
+      Headline(AttemptRate("first_attempt_of_start",
+                           "Tubes in the bin at the start that were placed by one attempt",
+                           PlacedOne, First),
+               "first_of_start");
+  metric.reduce = [](const RoundFacts& round) {
+    const RoundSummary& summary = round.record->summary;
+    Counts counts;
+    int placed = 0;
+    for (const AttemptFacts& facts : round.attempts) {
+      placed += facts.PlacedOne() ? 1 : 0;
+      counts.k += facts.PlacedOne() && facts.first ? 1 : 0;
+    }
+    // Without truth the start is what the first look found, which may be too few.
+    counts.n =
+        std::max(placed, summary.tubes_start - summary.placed_before - summary.outside_before);
+    return MetricSample{counts, {}};
+  };
+  return metric;
+}
+
+Metric InToleranceRate() {
+  return Headline(
+      AttemptRate("in_tolerance", "Attempts that placed exactly one tube, within the tolerance",
+                  ToleranceKnown,
+                  [](const AttemptFacts& facts) { return facts.attempt->in_tolerance == true; }),
+      "in_tolerance");
+}
+
+/// The same for another distance, with the round's own limit of yaw.
+Metric InToleranceAt(int error_mm) {
+  const std::string mm = std::to_string(error_mm);
+  Metric metric = AttemptRate(
+      "in_tolerance_at/" + mm, "Placed exactly one tube within " + mm + " mm", ToleranceKnown,
+      [error_mm](const AttemptFacts& facts) { return facts.Within(error_mm); });
+  metric.compared.clear();
+  return metric;
 }
 
 Metric EmptiedRate() {
@@ -101,7 +146,9 @@ const std::vector<Metric>& Metrics() {
   using Times = AttemptReport::SimTime;
   static const std::vector<Metric> metrics = {
       SuccessRate(),
+      InToleranceRate(),
       FirstAttemptRate(),
+      FirstAttemptOfStartRate(),
       EmptiedRate(),
       SimulatorUsed(),
       SimulatorSuccess(),
@@ -115,6 +162,10 @@ const std::vector<Metric>& Metrics() {
                   [](const Times& t) { return t.total(); }),
       RoundTime(),
       PlacedTubeTime(),
+      InToleranceAt(5),
+      InToleranceAt(10),
+      InToleranceAt(20),
+      InToleranceAt(50),
   };
   return metrics;
 }

@@ -43,7 +43,7 @@ void SetCrashed(int tubes_start, const std::string& reason, double wall_s, Round
   AttemptRecord attempt;
   attempt.outcome = AttemptOutcome::kFault;
   attempt.reason = reason;
-  attempt.success = false;
+  attempt.success = attempt.in_tolerance = false;
   record.attempts = {attempt};
   record.timings = {{1, std::nullopt, wall_s}};
   record.summary = RoundSummary();

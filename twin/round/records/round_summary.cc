@@ -39,6 +39,7 @@ Json ToJson(const RoundSummary& summary) {
   out["attempts"] = summary.attempts;
   out["success"] = has_truth ? ToJson(*summary.success) : Json(nullptr);
   out["first_attempt"] = ToJson(summary.first_attempt);
+  if (summary.tolerance) out["tolerance"] = ToJson(*summary.tolerance);
   out["emptied"] = summary.emptied;
   out["end_reason"] = summary.EndName();
   out["end_detail"] = summary.end_detail;
@@ -61,6 +62,9 @@ RoundSummary SummaryFromJson(const JsonView& view) {
   out.attempts = Integer(view, "attempts");
   if (const auto success = view.Optional("success")) out.success = CountsFromJson(*success);
   out.first_attempt = CountsFromJson(view.Field("first_attempt"));
+  if (const auto tolerance = view.Optional("tolerance")) {
+    out.tolerance = ToleranceFromJson(*tolerance);
+  }
   out.emptied = view.Field("emptied").AsBool();
   const JsonView end = view.Field("end_reason");
   if (end.AsString() != kCrashed) out.end = EnumFromJson(end, RoundEnd::kStored);

@@ -5,6 +5,7 @@
 
 #include "models/base/json_fwd.h"
 #include "planner/cycle/attempt_report.h"
+#include "twin/round/records/tolerance.h"
 #include "twin/statistics/statistics.h"
 
 namespace tubetwin {
@@ -20,6 +21,9 @@ struct RoundSummary {
   /// everything here is what the pipeline believes.
   std::optional<Counts> success;
   Counts first_attempt;  ///< Of the placed tubes, those that took one attempt.
+  /// What `in_tolerance` of its rows means; nothing: a cell without truth, crashed, or of an
+  /// earlier version.
+  std::optional<PlacementTolerance> tolerance;
   bool emptied = false;
   std::optional<RoundEnd> end;  ///< Nothing: its process crashed, nobody was left to say it.
   std::string end_detail;       ///< Why it ended, for people.
