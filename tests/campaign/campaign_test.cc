@@ -171,6 +171,27 @@ TEST_CASE("the identity holds what rows depend on and nothing of what is kept") 
              Contains("program is \"2\" against \"1\""));
 }
 
+TEST_CASE("what a campaign is run for stands in its file, and is part of what it is") {
+  const TemporaryFolder folder;
+  const std::string variant = "[[variant]]\ncount = 2\n";
+  CHECK(Load(folder, variant).purpose == "development");
+  const std::string claim = "purpose = \"claim\"\nseed = 9040\n" + variant;
+  CHECK(Load(folder, claim).purpose == "claim");
+  CHECK(Load(folder, "seed = 9040\n" + variant, {"purpose=claim"}).purpose == "claim");
+  const CampaignIdentity claimed = IdentityOf(Load(folder, claim), "1");
+  CHECK(claimed.purpose == "claim");
+  // It cannot be said afterwards of rounds that were run without it.
+  const CampaignIdentity tried = IdentityOf(Load(folder, "seed = 9040\n" + variant), "1");
+  CHECK_THAT(DifferenceOf(claimed, tried)->what,
+             Contains("purpose is \"claim\" against \"development\""));
+  Json before = claimed.document;
+  before.erase("purpose");
+  CHECK(IdentityFromJson(before, "campaign.json").purpose.empty());
+  CheckTextRefused("purpose = \"claims\"\n" + variant, ErrorKind::kConfig, "C.toml:1:11: purpose");
+  CheckTextRefused("purpose = \"claim\"\n" + variant, ErrorKind::kConfig,
+                   "C.toml: purpose is 'claim' and seed is 1");
+}
+
 TEST_CASE("the sample is a share of the rounds, the same whoever asks") {
   Campaign campaign;
   campaign.keep.sample = 0.1;
@@ -185,7 +206,7 @@ TEST_CASE("the sample is a share of the rounds, the same whoever asks") {
 
 TEST_CASE("every key of a campaign file stands in the help and in the schema") {
   const Json schema = CampaignSchema();
-  for (const char* key : {"seed", "rounds", "keep", "variant"}) {
+  for (const char* key : {"seed", "rounds", "purpose", "keep", "variant"}) {
     INFO(key);
     CHECK(schema["properties"].contains(key));
   }

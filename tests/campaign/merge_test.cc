@@ -224,7 +224,9 @@ TEST_CASE(
 TEST_CASE("rows of before tolerances are read, merged as they were and told as not known") {
   const TemporaryFolder folder;
   RunAll(FakeCampaign(3), folder / "now");
-  WriteJsonFile(ReadJsonFile(folder / "now/campaign.json"), folder / "old/campaign.json");
+  Json identity = ReadJsonFile(folder / "now/campaign.json");
+  identity.erase("purpose");
+  WriteJsonFile(identity, folder / "old/campaign.json");
   const std::string shard = "/shard-00000-of-00001.jsonl";
   const std::string mark = ReadCampaignIdentity(folder / "old").fingerprint();
   std::istringstream lines(ReadFile(folder / ("now" + shard)));
@@ -244,7 +246,10 @@ TEST_CASE("rows of before tolerances are read, merged as they were and told as n
   const Json summary = ReadJsonFile(folder / "merged/summary.json");
   CHECK(summary["in_tolerance"]["n"] == 0);
   CHECK(summary["first_attempt_of_start"]["n"] == 9);
+  CHECK(ReadJsonFile(folder / "merged/manifest.json")["purpose"].is_null());
   CHECK(ReadCampaignResult(folder / "merged").records.size() == 3);
+  WriteMerged(ReadShards({folder / "now"}), folder / "new");
+  CHECK(ReadJsonFile(folder / "new/manifest.json")["purpose"] == "development");
 }
 
 TEST_CASE(

@@ -26,7 +26,7 @@ constexpr int kMostRounds = 1000000, kMostVariants = 1000;
 
 bool IsCampaignKey(const std::string& override_text) {
   const std::string first = override_text.substr(0, override_text.find_first_of(".= \t"));
-  return first == "seed" || first == "rounds" || first == "keep";
+  return first == "seed" || first == "rounds" || first == "purpose" || first == "keep";
 }
 
 /// "pvc_a x 7, leao2020, resolution.strategy=plus45".
@@ -113,6 +113,15 @@ void RequireFewRounds(const Campaign& campaign, const std::string& path) {
                   std::to_string(campaign.rounds) + " rounds are " + std::to_string(all) +
                   " rounds; allowed: " + std::to_string(kMostVariants) + " variants and " +
                   std::to_string(kMostRounds) + " rounds in all");
+}
+
+/// A claim rests on rounds that nothing was tuned with. The default seed was surely used.
+void RequireOwnSeed(const Campaign& campaign, const std::string& path) {
+  if (campaign.purpose != "claim" || campaign.seed != Campaign().seed) return;
+  throw Error(ErrorKind::kConfig,
+              path + ": purpose is 'claim' and seed is " + std::to_string(campaign.seed) +
+                  ", the default, which development uses\nallowed: any other; give seed = a number "
+                  "that nothing was run with before");
 }
 
 /// The tables of variants; earlier campaign files call them arms.
@@ -209,6 +218,7 @@ Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& o
   CampaignKeys keys{campaign};
   source.ReadInto(keys);
   if (seed) campaign.seed = *seed;
+  RequireOwnSeed(campaign, path);
   if (tables.empty()) {
     throw Error(ErrorKind::kConfig,
                 path +
@@ -255,6 +265,7 @@ CampaignIdentity IdentityOf(const Campaign& campaign, const std::string& program
   out["mujoco"] = EngineVersion();
   out["seed"] = campaign.seed;
   out["rounds"] = campaign.rounds;
+  out["purpose"] = campaign.purpose;
   out["variants"] = Json::array();
   for (std::size_t i = 0; i < campaign.variants.size(); ++i) {
     out["variants"].push_back(VariantJson(campaign.variants[i], static_cast<int>(i)));
@@ -271,6 +282,7 @@ CampaignIdentity IdentityFromJson(Json document, const std::string& source) {
   out.mujoco = view.Field("mujoco").AsString();
   out.seed = view.Field("seed").AsInteger();
   out.rounds = IntegerIn(view.Field("rounds"), 1, kMostRounds);
+  if (const auto purpose = view.Optional("purpose")) out.purpose = purpose->AsString();
   const JsonView variants = view.Field(version == 1 ? "arms" : "variants");
   for (std::size_t i = 0; i < variants.Size(); ++i) {
     out.variants.push_back(variants.Item(i).Field("name").AsString());

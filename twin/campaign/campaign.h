@@ -31,16 +31,19 @@ struct CampaignVariant {
 struct Campaign {
   std::int64_t seed = 1;
   int rounds = 20;
+  /// "development", or "claim": of a seed that nothing was run with before, to state a rate. It is
+  /// said before the first round and stays with the rows; nobody can check what else was run.
+  std::string purpose = "development";
   KeepConfig keep;
   std::vector<CampaignVariant> variants;
 };
 
-/// Reads a campaign file: `seed`, `rounds`, `[keep]`, and `[[variant]]` tables with `name`, `part`,
-/// `count`, `profile` and `set = {key = value}` of scenario keys. A list where a key takes one
-/// value (or a list of lists where it takes a list) makes a variant of each. `overrides` are
-/// `a.b=value`: seed, rounds and keep.* of the campaign, anything else a scenario key of every
-/// variant. Everything that rounds read is read once here, so that errors come before any round:
-/// throws Error(kConfig | kMissing | kBadData).
+/// Reads a campaign file: `seed`, `rounds`, `purpose`, `[keep]`, and `[[variant]]` tables with
+/// `name`, `part`, `count`, `profile` and `set = {key = value}` of scenario keys. A list where a
+/// key takes one value (or a list of lists where it takes a list) makes a variant of each.
+/// `overrides` are `a.b=value`: seed, rounds and keep.* of the campaign, anything else a scenario
+/// key of every variant. Everything that rounds read is read once here, so that errors come before
+/// any round: throws Error(kConfig | kMissing | kBadData).
 Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& overrides,
                       std::optional<std::int64_t> seed);
 
@@ -55,6 +58,7 @@ struct CampaignIdentity {
   std::string build;  ///< BuildId() of the program that runs it; empty in files of before 0.4.
   std::int64_t seed = 0;
   int rounds = 0;                     ///< Of each variant.
+  std::string purpose;                ///< Campaign::purpose; empty in files of before 0.4.
   std::vector<std::string> variants;  ///< Their names.
 
   std::string fingerprint() const;  ///< Of the document.

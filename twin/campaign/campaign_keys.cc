@@ -25,6 +25,10 @@ void CampaignKeys::Visit(ConfigVisitor& v) {
   v.Field("seed", "seed of the campaign; each round's is drawn from it", campaign.seed,
           {0, 9007199254740991.0});
   v.Field("rounds", "rounds of every variant", campaign.rounds, {1, 1000000});
+  v.Choice("purpose",
+           "what it is run for: development, or claim, to state a rate by a seed that nothing was "
+           "run with before; said before the first round, it stays with the rows",
+           campaign.purpose, {"development", "claim"});
   v.Section("keep", "what stays of rounds besides their rows", campaign.keep);
 }
 

@@ -191,8 +191,9 @@ CampaignSummary Summarize(const CampaignResult& result, const std::vector<Metric
 }
 
 CampaignManifest ManifestOf(const CampaignResult& result) {
+  const CampaignIdentity& identity = result.identity;
   CampaignManifest out{
-      result.identity.program, result.identity.mujoco, result.identity.fingerprint(), {}};
+      identity.program, identity.mujoco, identity.fingerprint(), identity.purpose, {}};
   for (int variant = 0; variant < result.variants(); ++variant) {
     out.compute_s.push_back(TimesOf(result, variant));
   }

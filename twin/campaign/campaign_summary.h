@@ -93,6 +93,7 @@ struct VariantTimes {
 /// A campaign's manifest.json: versions and computing times.
 struct CampaignManifest {
   std::string program, mujoco, fingerprint;
+  std::string purpose;  ///< As CampaignIdentity's.
   std::vector<VariantTimes> compute_s;
 };
 CampaignManifest ManifestOf(const CampaignResult& result);

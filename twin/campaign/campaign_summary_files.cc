@@ -113,6 +113,7 @@ Json ToJson(const CampaignManifest& manifest) {
   out["program"] = manifest.program;
   out["mujoco"] = manifest.mujoco;
   out["fingerprint"] = manifest.fingerprint;
+  out["purpose"] = manifest.purpose.empty() ? Json(nullptr) : Json(manifest.purpose);
   out["compute_s"] = Json::array();
   for (const VariantTimes& times : manifest.compute_s) {
     Json row{{"variant", times.variant}, {"name", times.name}};
