@@ -69,6 +69,35 @@ TEST_CASE("several variants are told each on its own, by their whole names") {
   }
 }
 
+TEST_CASE("every page says how far to trust its rates, in a dozen lines at most") {
+  const auto section = [](const std::string& html) {
+    const std::size_t at = html.find("<section id=\"credibility\">");
+    REQUIRE(at != std::string::npos);
+    return html.substr(at, html.find("</section>", at) - at);
+  };
+  Campaign campaign = FakeCampaign(12);
+  campaign.variants[0].part = LoadPart("hose_b");
+  const std::string text = section(Markup(CampaignPage(campaign)));
+  CHECK_THAT(text, Contains("how often another comes along was fitted to this part") &&
+                       Contains("friction of parts 0.8 to 1.2, of the pads 0.6 to 1, bending "
+                                "stiffness 0.05 to 0.3 N m"));
+  CHECK_THAT(text, Contains("tests/validation/VALIDATION.md") && Contains("interval by rounds") &&
+                       Contains("the tolerance is 20&nbsp;mm and 10\xc2\xb0") &&
+                       Contains("1, development: ") &&
+                       Contains("Without measured materials and a real cell this verifies the "
+                                "method, not your rate."));
+  CHECK(CountOf(text, "<dt>") + CountOf(text, "<p>") <= 12);
+  campaign.purpose = "claim";
+  CHECK_THAT(section(Markup(CampaignPage(campaign))),
+             Contains("nothing was run with this seed before"));
+  const std::string several = section(Markup(CampaignPage(FakeCampaign(6, 2))));
+  CHECK_THAT(several, Contains("of each variant in the table above"));
+  StudySetup own;
+  own.part.emplace();
+  own.part->name = "mine";
+  CHECK_THAT(StudyGrounds(own).at(0).second, Contains("fitted to hose_b, not to this part"));
+}
+
 TEST_CASE("failure modes have their rates with intervals") {
   const std::string html = Markup(CampaignPage(FakeCampaign(12)));
   CHECK_THAT(html,

@@ -105,6 +105,8 @@ TEST_CASE("a round's page leads with what was placed, its numbers are those of s
   CHECK(shown.at("/sim_s").second == "412.2");  // Even: as printf rounds.
   CHECK_THAT(html, Contains("<span data-share=\"/first_attempt\">50.0</span>"));
   CHECK_THAT(html, Contains("The bin was not emptied."));
+  CHECK_THAT(html, Contains("id=\"credibility\"") && Contains("a single round states no rate") &&
+                       Contains("one round cannot say how much rounds differ"));
   CHECK(html.find("<h1>") < html.find("<h2>"));
 }
 

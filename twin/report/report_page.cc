@@ -91,6 +91,7 @@ std::string ReportHtml(const ReportInput& input, const KeptForReport& kept, cons
             Section("levers", "What would raise the rate", Levers(input)) +
             Section("more", "What more rounds would tell", MoreRounds(input)) + "</div>\n" +
             Section("variants", "Variants", VariantsTable(input)) +
+            Section("credibility", "How far to trust these rates", Credibility(input)) +
             Section("left", "Success by tubes left", TubesLeft(input)) +
             Section("times", "Where the time goes", Times(input)) +
             Section("view", "One attempt in 3-D", ViewerHtml(kept.attempts)) +

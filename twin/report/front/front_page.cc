@@ -121,32 +121,6 @@ std::string HeadlineCard(const ReportInput& input) {
   return out + "</div>\n";
 }
 
-/// Facts of all variants: what they share once, what differs variant by variant.
-std::string FactTable(const ReportInput& input, FactTexts (*facts_of)(const StudySetup&)) {
-  std::vector<FactTexts> all;
-  for (const StudySetup& setup : input.setups) all.push_back(facts_of(setup));
-  std::set<std::string> names;
-  std::string rows;
-  for (const FactTexts& facts : all) {
-    for (const auto& [name, text] : facts) {
-      if (!names.insert(name).second) continue;
-      std::string value, differing;
-      bool same = true;
-      for (std::size_t i = 0; i < all.size(); ++i) {
-        const auto found = std::find_if(all[i].begin(), all[i].end(),
-                                        [&name = name](const auto& f) { return f.first == name; });
-        const std::string here = found == all[i].end() ? std::string(kDash) : found->second;
-        same = same && here == text;
-        differing += "<div><span class=\"quiet\">" + Escaped(input.setups[i].name) + ":</span> " +
-                     Escaped(here) + "</div>";
-      }
-      rows += "<div><dt>" + Escaped(name) + "</dt><dd>" + (same ? Escaped(text) : differing) +
-              "</dd></div>\n";
-    }
-  }
-  return rows.empty() ? "" : "<dl class=\"study\">\n" + rows + "</dl>\n";
-}
-
 std::string Pictures(const ReportInput& input) {
   constexpr int kMost = 4;  ///< Of different parts; more would push the facts off the page.
   std::set<std::string> seen;
@@ -197,6 +171,31 @@ std::string VariantRates(const ReportInput& input) {
 }
 
 }  // namespace
+
+std::string FactTable(const ReportInput& input, FactTexts (*facts_of)(const StudySetup&)) {
+  std::vector<FactTexts> all;
+  for (const StudySetup& setup : input.setups) all.push_back(facts_of(setup));
+  std::set<std::string> names;
+  std::string rows;
+  for (const FactTexts& facts : all) {
+    for (const auto& [name, text] : facts) {
+      if (!names.insert(name).second) continue;
+      std::string value, differing;
+      bool same = true;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        const auto found = std::find_if(all[i].begin(), all[i].end(),
+                                        [&name = name](const auto& f) { return f.first == name; });
+        const std::string here = found == all[i].end() ? std::string(kDash) : found->second;
+        same = same && here == text;
+        differing += "<div><span class=\"quiet\">" + Escaped(input.setups[i].name) + ":</span> " +
+                     Escaped(here) + "</div>";
+      }
+      rows += "<div><dt>" + Escaped(name) + "</dt><dd>" + (same ? Escaped(text) : differing) +
+              "</dd></div>\n";
+    }
+  }
+  return rows.empty() ? "" : "<dl class=\"study\">\n" + rows + "</dl>\n";
+}
 
 const PartsPerHour& PageRate(const ReportInput& input, std::size_t variant) {
   const PartsPerHour& with_computing = input.manifest.compute_s.at(variant).parts_per_hour;

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "twin/report/front/study_facts.h"
 #include "twin/report/sections.h"
 
 namespace tubetwin {
@@ -13,6 +14,14 @@ namespace tubetwin {
 /// Title, parts an hour with definition and interval, pictures, facts, assumptions and what is not
 /// modelled. `cards`: rates that stand beside.
 std::string FrontPage(const ReportInput& input, const std::string& cards);
+
+/// How far to trust the rates: what they rest on, what was checked, their intervals, seed and
+/// purpose, and what the twin cannot tell.
+std::string Credibility(const ReportInput& input);
+
+/// Facts of all variants as a list: what they share once, what differs variant by variant. Empty
+/// where nothing is known.
+std::string FactTable(const ReportInput& input, FactTexts (*facts_of)(const StudySetup&));
 
 /// The median pick as a Gantt chart, with the spread of every phase over all picks.
 std::string CycleTime(const ReportInput& input);

@@ -175,6 +175,26 @@ FactTexts StudyAssumptions(const StudySetup& setup) {
   return out;
 }
 
+FactTexts StudyGrounds(const StudySetup& setup) {
+  FactTexts out;
+  if (setup.part) {
+    const Part& part = *setup.part;
+    const std::string& fitted_to = part.search.fitted_to;
+    out = {{"Search among motions", fitted_to == part.name
+                                        ? "how often another comes along was fitted to this part"
+                                        : "how often another comes along was fitted to " +
+                                              fitted_to + ", not to this part"}};
+  }
+  if (!IsSimulated(setup)) return out;
+  const bool drawn = KeyOf(setup, "physics/randomize") != false;
+  const Json pads = KeyOf(setup, "physics/pad_friction");
+  out.emplace_back(drawn ? "Drawn for each round" : "The same in every round",
+                   "friction of parts " + FrictionText(setup, drawn) +
+                       (drawn ? ", of the pads " + RangeText(pads) : "") + ", bending stiffness " +
+                       StiffnessText(setup, drawn));
+  return out;
+}
+
 const std::vector<std::string>& NotModelled() {
   static const std::vector<std::string> kList = {
       "Changing bin and tray, and stops by people or machines around the cell: the hours are those "

@@ -18,6 +18,10 @@ FactTexts StudyFacts(const StudySetup& setup);
 /// What was assumed: physics that rounds draw or have, noise, speeds. Likewise.
 FactTexts StudyAssumptions(const StudySetup& setup);
 
+/// Where the part's numbers come from, what was fitted to what, and what rounds draw: what rates
+/// rest on. Likewise.
+FactTexts StudyGrounds(const StudySetup& setup);
+
 /// What the numbers leave out, one sentence each.
 const std::vector<std::string>& NotModelled();
 

@@ -59,6 +59,7 @@ StudySetup SetupOfRound(const std::string& folder) {
       setup.config = ConfigOf(scenario);
       setup.tubes = scenario.pile.count;
       setup.config.erase("seed");
+      setup.seed = scenario.seed;
     } catch (const Error& error) {
       // Another version's keys: what they meant is not known here, the rows are read all the same.
       if (error.kind() != ErrorKind::kConfig) throw;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,11 +14,12 @@ namespace tubetwin {
 
 /// What the rounds of one variant were run with, as their files say it: what a front page names.
 struct StudySetup {
-  std::string name;          ///< Of the variant.
-  std::optional<Part> part;  ///< Nothing: the files do not say.
-  int tubes = 0;             ///< At the start of a round.
-  Json config;               ///< The resolved keys, nested; null: not known.
-  std::optional<Bin> bin;    ///< Of a start pile that was kept.
+  std::string name;                  ///< Of the variant.
+  std::optional<Part> part;          ///< Nothing: the files do not say.
+  int tubes = 0;                     ///< At the start of a round.
+  std::optional<std::int64_t> seed;  ///< Of a round; a campaign's variants share its own.
+  Json config;                       ///< The resolved keys, nested; null: not known.
+  std::optional<Bin> bin;            ///< Of a start pile that was kept.
   /// Centerlines of the part in shapes of their own: the one that it has, else some that are drawn.
   std::vector<Polyline> shapes;
   /// Tubes of one start pile, frame N, where one was kept.
