@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 import cell
-from suite import Check, GRAVITY, Refused, SOURCE, edit
+from suite import GRAVITY, SOURCE, Check, Refused, edit
 
 try:
     import pinocchio
@@ -111,3 +111,17 @@ def kinematics_and_dynamics(lab):
     yield Check(many + "gravity and velocity forces", 0.02, errors["bias"], 0, digits, RESULT, "N m", kind="most")
     yield Check(many + "inverse dynamics", 0.02, errors["inverse"], 0, digits, RESULT, "N m", kind="most")
 
+
+
+def tools(lab):
+    """Masses on the flange, which the force sensor tells apart: above it scanner and sensor, below it the gripper."""
+    _, path = cell.straight_part(lab)
+    model = mujoco.MjModel.from_xml_string(cell.export(lab, path, [[(-0.25, 0.1, 0.013), (0.25, 0.1, 0.013)]]))
+    gripper = read("grippers", "robotiq_2f85.toml")
+    for name, expected, source in (
+            ("gripper", gripper["mass_kg"] + gripper["coupling_mass_kg"], "models/grippers/robotiq_2f85.toml"),
+            ("scanner", read("scanners", "phoxi_s.toml")["mass_kg"], "models/scanners/phoxi_s.toml"),
+            ("wrist sensor", read("wrists", "ati_gamma_si65.toml")["mass_kg"], "models/wrists/ati_gamma_si65.toml")):
+        body = model.body({"gripper": "tool"}.get(name, name.replace(" ", "_"))).id
+        yield Check(f"mass of the {name}", expected, model.body_subtreemass[body], 1e-4, "written with six digits",
+                    source, "kg")

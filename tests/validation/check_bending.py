@@ -48,18 +48,19 @@ def ring_down(lab, mode, timestep_s):
     links = part["links"]
     curvature = theory.free_free_curvature(mode, np.arange(1, links) / links)
     weight = curvature / np.abs(curvature).max()
-    address = []
+    hinges = []  # Of each: address, and the bend about z that one radian of it makes at its node.
     for i, (joints, side) in enumerate(rod.bend_joints()):
-        across = [j for j in joints if abs(rod.model.jnt_axis[j][0]) > 0.9][0]
-        address.append((rod.model.jnt_qposadr[across], side))
-        rod.data.qpos[address[-1][0]] = 0.03 * weight[i] * side
+        for joint in joints:
+            share = side * rod.data.xaxis[joint][2]
+            hinges.append((rod.model.jnt_qposadr[joint], share, weight[i]))
+            rod.data.qpos[hinges[-1][0]] = 0.03 * weight[i] * share
     omega = theory.free_free_frequency(mode, part["bending_stiffness_Nm2"], part["mass_kg"] / part["length_m"],
                                        part["length_m"])
     every = max(1, int(round(2 * np.pi / omega / 12 / timestep_s)))
     samples = []
     for step in range(every * 30):
         if step % every == 0:
-            samples.append(sum(w * side * rod.data.qpos[a] for w, (a, side) in zip(weight, address)))
+            samples.append(sum(w * share * rod.data.qpos[a] for a, share, w in hinges))
         mujoco.mj_step(rod.model, rod.data)
     measured, ratio = theory.poles(samples, every * timestep_s)
     return part, omega, measured, ratio
@@ -71,14 +72,14 @@ def loss_factor(part):
 
 def modes(lab):
     part, omega, measured, ratio = ring_down(lab, 0, 0.001)
-    yield Check("first free-free bending mode", omega / (2 * np.pi), measured / (2 * np.pi), 0.04,
-                "links and the rotors of the joints (armature) slow it a little", "Euler-Bernoulli, 4.730 / L", "Hz")
+    yield Check("first free-free bending mode", omega / (2 * np.pi), measured / (2 * np.pi), 0.05,
+                "rotors at the joints (armature), which steady light links, slow it", "Euler-Bernoulli, 4.730 / L", "Hz")
     yield Check("damping ratio of the first mode", 0.5 * loss_factor(part), ratio, 0.10,
-                "the steps of 1 ms damp on their own", "half of the part's loss factor"
+                "implicit steps of 1 ms damp by omega dt / 2 = 0.05 on their own, which the joints must make up for", "half of the part's loss factor"
                 + ("" if "loss_factor" in part else " (none stated: EPDM 0.1 to 0.2)"))
     _, omega, measured, _ = ring_down(lab, 1, 0.001)
-    yield Check("second free-free bending mode", omega / (2 * np.pi), measured / (2 * np.pi), 0.08,
-                "a wave of a third of the length meets few links", "Euler-Bernoulli, 7.853 / L", "Hz")
+    yield Check("second free-free bending mode", omega / (2 * np.pi), measured / (2 * np.pi), 0.15,
+                "the same, more so, and a third of the length has few links", "Euler-Bernoulli, 7.853 / L", "Hz")
 
 
 def hook(lab):
@@ -161,7 +162,7 @@ def michell(lab, links=16, rate_rad_s=6.0):
     part, rod = ring(lab, links)
     EI = part["bending_stiffness_Nm2"]
     critical = 2 * np.pi * np.sqrt(3) * EI / theory.torsional_stiffness(EI)
-    along = [rod.model.jnt_qposadr[j] for ids, _ in rod.bend_joints() for j in ids if rod.model.jnt_axis[j][2] > 0.9]
+    along = [rod.model.jnt_qposadr[j] for ids, _ in rod.bend_joints() for j in ids if rod.twists(j)]
     rng = np.random.default_rng(1)
     twist, most, left = 0.0, 0.0, np.inf
     while twist < 1.4 * critical and left == np.inf:

@@ -79,6 +79,10 @@ class Rod:
         mujoco.mj_resetData(self.model, self.data)
         mujoco.mj_forward(self.model, self.data)
 
+    def twists(self, joint):
+        """Whether a joint turns about the tube rather than across it."""
+        return abs(self.model.jnt_axis[joint][2]) > 0.9
+
     def bend_joints(self):
         """For each joint node 1..n-1: ids of the hinges there, sorted by name, and the side: +1 where the link towards
         the tube's last node moves."""

@@ -117,3 +117,27 @@ def poles(samples, step_s):
     z = z[np.argmax(np.abs(z))]
     pole = np.log(z) / step_s
     return abs(pole), -pole.real / abs(pole)
+
+
+def helical_moment(EI, tension_N, length_m):
+    """Least twisting moment at which a straight rod with clamped ends under tension turns into a helix: EI w'''' - i M w''' -
+    T w'' = 0 of the deflection w = y + i z, w = w' = 0 at both ends (Greenhill 1883; van der Heijden and Thompson 2000)."""
+    def smallest(moment):
+        a = moment / (2 * EI)
+        b = np.sqrt(complex(moment**2 - 4 * EI * tension_N)) / (2 * EI)
+        x = np.array([0.0, length_m])
+        waves = [1j * (a + b), 1j * (a - b)]
+        w = [np.ones(2), x / length_m] + [np.exp(k * x) for k in waves]
+        slope = [np.zeros(2), np.ones(2)] + [k * length_m * np.exp(k * x) for k in waves]
+        matrix = np.array([np.concatenate(pair) for pair in zip(w, slope)]).T
+        return np.linalg.svd(matrix, compute_uv=False)[-1]
+
+    moments = 2 * np.sqrt(EI * tension_N) + np.linspace(0.2, 15, 3000) * EI / length_m  # From the endless rod's on.
+    values = np.array([smallest(m) for m in moments])
+    for i in range(1, len(moments) - 1):
+        if values[i] < values[i - 1] and values[i] < values[i + 1]:
+            around = np.linspace(moments[i - 1], moments[i + 1], 2001)
+            fine = [smallest(m) for m in around]
+            if min(fine) < 1e-2 * values[i - 1]:  # A zero, no mere dip.
+                return around[int(np.argmin(fine))]
+    return np.nan

@@ -26,6 +26,7 @@ KNOWN = {
     "hook's compliance out of its plane": "links do not twist",
     "torsional stiffness G J": "links do not twist",
     "check_bending.michell can be made": "links do not twist",
+    "check_helix.helix can be made": "links do not twist",
     "Michell's ring: twist at which it leaves its plane": "links do not twist",
     "pvc_a: length from tip to tip": "round ends lie beyond the length",
     "hose_b: length from tip to tip": "round ends lie beyond the length",
@@ -62,18 +63,19 @@ def enter(environment):
 
 def groups(rods_folder):
     """Title, text, functions, and those left out by --fast."""
-    import check_arm, check_bending, check_body, check_grip, check_gripper, check_rest, check_scan, mutants, rods  # noqa: E401
+    import check_arm, check_bending, check_body, check_grip, check_gripper, check_helix, check_rest  # noqa: E401
+    import check_scan, mutants, rods  # noqa: E401
     return (
         ("Bending and twist", "A hose of `hose_b`, straight, hooked or closed to a ring.",
          (check_bending.elastica, check_bending.modes, check_bending.hook, check_bending.torsion,
-          check_bending.michell), ()),
+          check_bending.michell, check_helix.helix), ()),
         ("Bodies", "Mass, inertia, length and motion of single tubes.",
          (check_body.inertia, check_body.fall, check_body.pendulum, check_body.energy), ()),
         ("Contact", "Three straight tubes in the cell's bin, and a tube on each surface of the cell, leaning until it "
          "slides.", (check_rest.rest, check_rest.friction, check_rest.drift), (check_rest.hoses,)),
         ("Grip", "A straight tube between the cell's pads, arm held still.", (check_grip.slip, check_grip.wrench), ()),
         ("Gripper's room", "Shapes of the cell's gripper at five openings.", (check_gripper.envelope,), ()),
-        ("Arm", "The cell's arm without its tool.", (check_arm.kinematics_and_dynamics,), ()),
+        ("Arm", "The cell's arm without its tool, and the masses that hang on it.", (check_arm.kinematics_and_dynamics, check_arm.tools), ()),
         ("Scanner", "`tubetwin scan` of four straight tubes at four heights.", (check_scan.rays,), ()),
         ("Real rods", rods.TEXT + ("" if rods_folder else rods.NOT_MEASURED), rods.checks(rods_folder), ()),
         ("Mutants", "The suite tests itself: models that are wrong by a fifth.", (mutants.mutants,), ()),
