@@ -1,5 +1,6 @@
 """The cell that the program exports (cell.xml of a result folder) in the stock engine."""
 
+import json
 import os
 import subprocess
 import time
@@ -12,9 +13,17 @@ from suite import Refused
 ARM = [f"arm_joint{i}" for i in range(1, 7)]
 PADS = ("pad_left", "pad_right")
 FINGERS = ("finger_left", "finger_right")
-# One value instead of a range, so that every expected value is known.
-ASKED = {"tube_friction": 0.45, "pad_friction": 0.8, "mass_scale": 1.0}
-KNOWN = {"pad_torsion_m": 0.004}  # Keys that some versions have; left out where the program refuses them.
+# One value instead of a range, another for each pair, so that every expected value is known; all tubes alike.
+ASKED = {"tube_friction": 0.45, "bin_friction": 0.35, "tray_friction": 0.55, "pad_friction": 0.8, "pad_torsion_m": 0.001,
+         "mass_scale": 1.0}
+ALIKE = ("mass", "radius", "length", "stiffness", "friction", "loss")
+
+
+def asked(lab):
+    """Values of [physics] that this program knows; it may draw bin and tray as one with the tubes."""
+    known = json.loads(lab.run("tubetwin", "config", "schema"))["properties"]["physics"]["properties"]
+    values = {key: value for key, value in ASKED.items() if key in known}
+    return values, ALIKE if "specimen" in known else ()
 
 
 def straight_part(lab, **changes):
@@ -24,10 +33,10 @@ def straight_part(lab, **changes):
                     centerline_m=[-0.5 * length, 0.0, 0.0, 0.5 * length, 0.0, 0.0], **changes)
 
 
-def export(lab, part_path, lines, asked=None):
+def export(lab, part_path, lines):
     """XML of the cell with tubes of a part along lines in the bin, settled by the program. The round that it
     belongs to is ended as soon as the file is there."""
-    key = (part_path, str(lines), str(asked))
+    key = (part_path, str(lines))
     if key in lab.cells:
         return lab.changed(lab.cells[key])
     out = os.path.join(lab.folder, f"cell_{len(lab.cells)}")
@@ -36,8 +45,9 @@ def export(lab, part_path, lines, asked=None):
         file.write("tube,index,x,y,z\n")
         for tube, line in enumerate(lines):
             file.writelines(f"{tube},{i},{p[0]:.9g},{p[1]:.9g},{p[2]:.9g}\n" for i, p in enumerate(line))
-    values = dict(ASKED, **(asked or {}))
+    values, alike = asked(lab)
     sets = [f"physics.{name}=[{value}, {value}]" for name, value in values.items()]
+    sets += [f"physics.specimen.{name}=0" for name in alike]
     sets += [f"pile.file={pile}", f"pile.part={part_path}"]
     command = [os.path.join(lab.programs, "tubetwin"), "run", "--seed", "1", "--out", out, "--force"]
     log = open(out + ".log", "w+")

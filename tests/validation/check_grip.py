@@ -52,7 +52,11 @@ class Held(cell.Cell):
 
     def normal_N(self, pads):
         """Sum of forces between pads and tube along the closing direction."""
-        return sum(abs(sum(f @ self.y for _, _, f in self.contacts(lambda a, b: pad in (a, b)))) for pad in pads)
+        total = 0.0
+        for pad in pads:  # One shape or several, all named after it.
+            met = self.contacts(lambda a, b: a.startswith(pad) or b.startswith(pad))
+            total += abs(sum(force @ self.y for _, _, force in met))
+        return total
 
     def ramp(self, force=(0, 0, 0), torque=(0, 0, 0), seconds=1.5):
         """Raises a load on the tube's middle until it gives way. Returns the share of it reached, and the sum of both

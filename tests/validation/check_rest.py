@@ -120,20 +120,17 @@ def onset(model):
     return 0.5 * (low + high)
 
 
-def pairs(lab):
-    """Expected coefficient of the tube against each other surface."""
-    return {"tube1_g0": ("tube", "tube_friction"), "bin_floor": ("bin", "tube_friction"),
-            "tray": ("tray", "tube_friction"), "pad_left": ("pad", "pad_friction"),
-            "finger_left_bar": ("finger", None)}
-
-
-FINGER = 0.3  # Bare aluminium of a finger's back on a tube: below what the tubes have among themselves.
+FINGER = 0.3  # Bare aluminium of a finger's back: below what the tubes have among themselves.
 
 
 def friction(lab):
-    model = pile_of_three(lab).model
-    for geom, (name, key) in pairs(lab).items():
-        expected = cell.ASKED[key] if key else FINGER
+    """The slope at which a straight tube slides along itself on each surface of the cell."""
+    model, values = pile_of_three(lab).model, cell.asked(lab)[0]
+    for geom, name in (("tube1_g0", "tube"), ("bin_floor", "bin"), ("tray", "tray"), ("pad_left", "pad"),
+                       ("finger_left_bar", "finger")):
+        key = f"{name}_friction" if f"{name}_friction" in values else "tube_friction"
+        expected, source = values[key], f"Coulomb; physics.{key} as asked"
+        if name == "finger":
+            expected, source = FINGER, "Coulomb; bare aluminium, assumed by the program at the finger's shapes"
         yield Check(f"tube on {name}: slope at which it slides", expected, onset(pair_scene(model, geom)), 0.04,
-                    "creep below, a slow start above", f"Coulomb; physics.{key} as asked" if key
-                    else "Coulomb; the finger's own coefficient, as written at its geom")
+                    "creep below, a slow start above", source)
