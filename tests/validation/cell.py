@@ -14,8 +14,8 @@ ARM = [f"arm_joint{i}" for i in range(1, 7)]
 PADS = ("pad_left", "pad_right")
 FINGERS = ("finger_left", "finger_right")
 # One value instead of a range, another for each pair, so that every expected value is known; all tubes alike.
-ASKED = {"tube_friction": 0.45, "bin_friction": 0.35, "tray_friction": 0.55, "pad_friction": 0.8, "pad_torsion_m": 0.001,
-         "mass_scale": 1.0}
+ASKED = {"tube_friction": 0.45, "bin_friction": 0.35, "tray_friction": 0.55, "pad_friction": 0.8,
+         "pad_torsion_m": 0.001, "mass_scale": 1.0}
 ALIKE = ("mass", "radius", "length", "stiffness", "friction", "loss")
 
 
@@ -115,7 +115,7 @@ class Cell:
         self.model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
 
     def contacts(self, wanted):
-        """(contact, force on its second geom in the world) of contacts that `wanted`(names of both geoms) lets through."""
+        """(contact, names, force on its second geom in the world) of contacts that `wanted` lets through by both names."""
         out, force = [], np.zeros(6)
         for i in range(self.data.ncon):
             contact = self.data.contact[i]

@@ -41,6 +41,37 @@ def rest(lab):
                 "a hundredth of the smallest tube", "mm", kind="most")
 
 
+def drop(lab):
+    """Energy of three tubes that fall 100 mm, spin and come to rest."""
+    world = pile_of_three(lab)
+    world.awake()
+    m, d = world.model, world.data
+    m.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+    weight = sum(m.body(t).mass[0] for t in world.tubes) * GRAVITY
+    mujoco.mj_forward(m, d)
+    resting = d.energy.sum()
+    for i, tube in enumerate(world.tubes):
+        joint = m.joint(cell.tube_joint(tube))
+        d.qpos[joint.qposadr[0] + 2] += 0.1
+        d.qvel[joint.dofadr[0]:joint.dofadr[0] + 6] = [0.3, 0, 0, 1, 2, 3 - i]
+    mujoco.mj_forward(m, d)
+    first = d.energy.sum() - resting
+    most = 0.0
+
+    def watch():
+        nonlocal most
+        if d.time > 0:
+            most = max(most, d.energy.sum() - resting)
+
+    world.step(2.0, watch)
+    yield Check("three tubes thrown down from 100 mm: their energy at first over the fall's", 1.0, first / (0.1 * weight),
+                0, "they also turn and fly", "m g h", kind="least")
+    yield Check("the same: most energy at any time after", 1.001, most / first, 0, "single steps round",
+                "contacts and friction only take energy", kind="most")
+    yield Check("the same: energy left after 2 s", 0.01, (d.energy.sum() - resting) / first, 0,
+                "they lie elsewhere than before", "friction and contacts end all motion", kind="most")
+
+
 def drift(lab, seconds=60.0):
     """How far tubes at rest creep, with and without the engine's sleep."""
     for asleep in (True, False):

@@ -24,6 +24,9 @@ KNOWN = {
     "damping ratio of the first mode": "no loss factor is stated; the engine's implicit steps of 1 ms add 0.05",
     "damping 20 % too large: checks that then fail": "the same",
     "hook's compliance out of its plane": "links do not twist",
+    "14 links: hook's compliance out of its plane": "links do not twist",
+    "20 links: hook's compliance out of its plane": "links do not twist",
+    "40 links: hook's compliance out of its plane": "links do not twist",
     "torsional stiffness G J": "links do not twist",
     "check_bending.michell can be made": "links do not twist",
     "check_helix.helix can be made": "links do not twist",
@@ -68,11 +71,11 @@ def groups(rods_folder):
     return (
         ("Bending and twist", "A hose of `hose_b`, straight, hooked or closed to a ring.",
          (check_bending.elastica, check_bending.modes, check_bending.hook, check_bending.torsion,
-          check_bending.michell, check_helix.helix), ()),
+          check_bending.michell, check_helix.helix), (check_bending.hook_converges,)),
         ("Bodies", "Mass, inertia, length and motion of single tubes.",
          (check_body.inertia, check_body.fall, check_body.pendulum, check_body.energy), ()),
         ("Contact", "Three straight tubes in the cell's bin, and a tube on each surface of the cell, leaning until it "
-         "slides.", (check_rest.rest, check_rest.friction, check_rest.drift), (check_rest.hoses,)),
+         "slides.", (check_rest.rest, check_rest.friction, check_rest.drop, check_rest.drift), (check_rest.hoses,)),
         ("Grip", "A straight tube between the cell's pads, arm held still.", (check_grip.slip, check_grip.wrench), ()),
         ("Gripper's room", "Shapes of the cell's gripper at five openings.", (check_gripper.envelope,), ()),
         ("Arm", "The cell's arm without its tool, and the masses that hang on it.", (check_arm.kinematics_and_dynamics, check_arm.tools), ()),
