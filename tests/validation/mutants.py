@@ -3,6 +3,7 @@
 import check_bending
 import check_body
 import check_rest
+import theory
 from suite import Check, Lab, Refused, edit
 
 MORE = 1.2
@@ -23,13 +24,26 @@ def friction(root):
         geom.set("friction", scaled(geom.get("friction", "1")))
 
 
-def joints(attribute):
-    """Changes the first number of an attribute of all joints of tubes that have a spring."""
+def springs(root):
+    """Joints of tubes that have a spring."""
+    return [j for b in tube_bodies(root) for j in b.findall("joint") if j.get("stiffness")]
+
+
+def stiffness(root):
+    for joint in springs(root):
+        joint.set("stiffness", scaled(joint.get("stiffness")))
+
+
+def damping_of(lab):
+    """A fifth more than the stated loss factor asks for, which joints and steps give together."""
+    part, _ = lab.part("hose_b")
+    omega = theory.free_free_frequency(0, part["bending_stiffness_Nm2"], part["mass_kg"] / part["length_m"],
+                                       part["length_m"])
+
     def change(root):
-        for body in tube_bodies(root):
-            for joint in body.findall("joint"):
-                if joint.get("stiffness") and joint.get(attribute):
-                    joint.set(attribute, scaled(joint.get(attribute)))
+        for joint in springs(root):
+            more = (MORE - 1) * check_bending.loss_factor(part) / omega * float(joint.get("stiffness").split()[0])
+            joint.set("damping", f"{float(joint.get('damping', '0').split()[0]) + more:.9g}")
     return change
 
 
@@ -47,10 +61,12 @@ def length(root):
                 element.set("size", scaled(element.get("size"), 1))
 
 
-MUTANTS = (("friction", friction, (check_rest.friction,)),
-           ("bending stiffness", joints("stiffness"), (check_bending.elastica_once, check_bending.modes)),
-           ("damping", joints("damping"), (check_bending.modes,)),
-           ("length", length, (check_body.inertia, check_bending.elastica_once)))
+def wrong_models(lab):
+    """Name, change of the XML, checks to ask."""
+    return (("friction", friction, (check_rest.friction,)),
+            ("bending stiffness", stiffness, (check_bending.elastica_once, check_bending.modes)),
+            ("damping", damping_of(lab), (check_bending.modes,)),
+            ("length", length, (check_body.inertia, check_bending.elastica_once)))
 
 
 def verdicts(lab, functions):
@@ -64,7 +80,7 @@ def verdicts(lab, functions):
 
 
 def mutants(lab):
-    for name, change, functions in MUTANTS:
+    for name, change, functions in wrong_models(lab):
         right = verdicts(lab, functions)
         wrong = Lab(lab.programs, lab.folder, lambda xml, change=change: edit(xml, change))
         wrong.cells = lab.cells
