@@ -72,6 +72,10 @@ void CheckPart(const Part& part, ErrorKind kind, const std::string& source) {
     throw Error(kind, source + ": name is '" + Printable(part.name) +
                           "'; allowed: UTF-8 without line breaks and other control characters");
   }
+  if (!IsPlainUtf8(part.source)) {
+    throw Error(kind, source + ": source is '" + Printable(part.source) +
+                          "'; allowed: UTF-8 without line breaks and other control characters");
+  }
   if (part.length_m < 4.0 * part.radius_m) {
     throw Error(kind, source + ": length_m " + Number(part.length_m) + " is below four radii (" +
                           Number(4.0 * part.radius_m) + "); that is no tube");
@@ -127,6 +131,10 @@ void Part::Visit(ConfigVisitor& v) {
           colour_rgb, 3, {0, 1});
   v.Field("gloss", "share of points that the scanner loses where the surface mirrors its light",
           gloss, {0, 1});
+  v.Field("source",
+          "where mass, friction, stiffness and shape come from, and what was fitted to what: shown "
+          "in reports",
+          source);
   v.Section("search", "how often another tube comes along, as the search among motions takes it",
             search);
 }

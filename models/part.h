@@ -55,6 +55,9 @@ struct Part {
   /// How much the surface mirrors, 0 matt to 1: what the scanner loses where it mirrors its
   /// projector.
   double gloss = 0.0;
+  /// Where mass, friction, stiffness and shape come from, and what was fitted to what, for reports;
+  /// empty: nobody said it.
+  std::string source;
   PartSearch search;
 
   /// Share of light that the surface scatters back: mean of the colour.

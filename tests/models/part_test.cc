@@ -77,6 +77,8 @@ TEST_CASE("A user's part file is read strictly", "[unit]") {
   CHECK_THAT(refused("radius = 0.02\n"), Catch::Contains("radius_m"));
   CHECK_THAT(refused("mass_kg = \"heavy\"\n"), Catch::Contains("mass_kg"));
   CHECK_THAT(refused("kind = \"rope\"\n"), Catch::Contains("rope") && Catch::Contains("hose"));
+  CHECK_THAT(refused("source = \"weighed\\nhere\"\n"),
+             Catch::Contains("source is 'weighed\\x0Ahere'; allowed: UTF-8 without line breaks"));
   CHECK_THAT(refused("bend_deg = [70, 10]\n"), Catch::Contains("bend_deg is [70, 10]"));
   CHECK_THAT(refused("length_m = 0.06\nradius_m = 0.03\n"), Catch::Contains("four radii"));
   CHECK_THAT(refused("shape = \"hooks\"\nlength_m = 0.2\nbend_deg = [90, 150]\n"),
@@ -88,6 +90,7 @@ TEST_CASE("A part goes to JSON and back, by name when it is a shipped one", "[un
     const Json json = PartToJson(LoadPart(name));
     REQUIRE(json.is_string());
     CHECK(PartToJson(PartFromJson(JsonView(json, "x"))) == json);
+    CHECK_FALSE(LoadPart(name).source.empty());  // Whoever reads a report wants to know.
   }
   Part mine = LoadPart("hose_b");
   mine.radius_m = 0.012;

@@ -78,7 +78,8 @@ TEST_CASE("every page says how far to trust its rates, in a dozen lines at most"
   Campaign campaign = FakeCampaign(12);
   campaign.variants[0].part = LoadPart("hose_b");
   const std::string text = section(Markup(CampaignPage(campaign)));
-  CHECK_THAT(text, Contains("how often another comes along was fitted to this part") &&
+  CHECK_THAT(text, Contains("were fitted to its rates of hoses that come along") &&
+                       Contains("how often another comes along was fitted to this part") &&
                        Contains("friction of parts 0.8 to 1.2, of the pads 0.6 to 1, bending "
                                 "stiffness 0.05 to 0.3 N m"));
   CHECK_THAT(text, Contains("tests/validation/VALIDATION.md") && Contains("interval by rounds") &&
@@ -95,7 +96,8 @@ TEST_CASE("every page says how far to trust its rates, in a dozen lines at most"
   StudySetup own;
   own.part.emplace();
   own.part->name = "mine";
-  CHECK_THAT(StudyGrounds(own).at(0).second, Contains("fitted to hose_b, not to this part"));
+  CHECK(StudyGrounds(own).at(0).second == "their source is not said (key source of the part file)");
+  CHECK_THAT(StudyGrounds(own).at(1).second, Contains("fitted to hose_b, not to this part"));
 }
 
 TEST_CASE("failure modes have their rates with intervals") {

@@ -242,6 +242,10 @@ ImportedPart PartOfTube(const MeshTube& tube, const PartImport& given, const Par
   }
   SetMass(tube, given, material, out);
   SetStiffness(tube, given, out);
+  part.source = "Shape of " + Printable(std::filesystem::path(given.mesh).filename().string()) +
+                "; mass " + out.mass_source +
+                (out.stiffness_source.empty() ? "" : "; stiffness " + out.stiffness_source) +
+                "; friction that of " + Printable(given.material);
   return out;
 }
 

@@ -180,7 +180,10 @@ FactTexts StudyGrounds(const StudySetup& setup) {
   if (setup.part) {
     const Part& part = *setup.part;
     const std::string& fitted_to = part.search.fitted_to;
-    out = {{"Search among motions", fitted_to == part.name
+    out = {{"Part's numbers", part.source.empty()
+                                  ? "their source is not said (key source of the part file)"
+                                  : part.source},
+           {"Search among motions", fitted_to == part.name
                                         ? "how often another comes along was fitted to this part"
                                         : "how often another comes along was fitted to " +
                                               fitted_to + ", not to this part"}};
