@@ -10,7 +10,7 @@ import cell
 from suite import Check, GRAVITY, SOURCE
 
 GRIP_N = 60.0
-SLIP_M, TURN_RAD = 0.001, np.radians(3.0)
+SLIP_M, TURN_RAD = 0.001, np.radians(1.5)  # Creep stays below until it gives way, which it does within a tenth of a second.
 
 
 def gripper_file():
@@ -58,7 +58,7 @@ class Held(cell.Cell):
             total += abs(sum(force @ self.y for _, _, force in met))
         return total
 
-    def ramp(self, force=(0, 0, 0), torque=(0, 0, 0), seconds=1.5):
+    def ramp(self, force=(0, 0, 0), torque=(0, 0, 0), seconds=3.0):
         """Raises a load on the tube's middle until it gives way. Returns the share of it reached, and the sum of both
         pads' forces on the tube just before (the linkage may tighten or loosen with the load)."""
         start = self.data.xpos[self.body()] - self.pads()
@@ -90,7 +90,7 @@ def slip(lab):
     load = 5 * mu * GRIP_N * width / 4
     share, normal = Held(lab).ramp(torque=load * world.y)
     yield Check("held tube turns between the pads: torque at 60 N", mu * GRIP_N * width / 2,
-                load * share * 2 * GRIP_N / normal, 0.10, "3 degrees while the load rises",
+                load * share * 2 * GRIP_N / normal, 0.10, "1.5 degrees while the load rises",
                 "line contact of evenly spread pressure: mu N a / 2 a pad, a half the pad's width", "N m")
 
 

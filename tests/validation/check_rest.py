@@ -96,7 +96,7 @@ def hoses(lab, seconds=20.0):
     lines = [[(a, y, z) for a in x] for y in (0.08, -0.08)] + [[(0.0, a, 3.1 * z) for a in x]]
     world = cell.Cell(cell.export(lab, path, lines))
     world.awake()
-    world.step(3.0)
+    world.step(12.0)  # Straight hoses roll to and fro for a while.
     bodies = [world.model.body(t).id for t in world.tubes]
     start = world.data.xpos[bodies].copy()
     world.step(seconds)
