@@ -63,6 +63,7 @@ void CheckCenterline(const Part& part, ErrorKind kind, const std::string& source
 void CheckPart(const Part& part, ErrorKind kind, const std::string& source) {
   CheckOrder(part.friction_range, "friction_range", kind, source);
   CheckOrder(part.bending_stiffness_range_Nm2, "bending_stiffness_range_Nm2", kind, source);
+  CheckOrder(part.loss_factor_range, "loss_factor_range", kind, source);
   CheckOrder(part.bends, "bends", kind, source);
   CheckOrder(part.bend_deg, "bend_deg", kind, source);
   CheckOrder({part.search.extra_min, part.search.extra_max}, "search.extra_min, extra_max", kind,
@@ -110,15 +111,20 @@ void Part::Visit(ConfigVisitor& v) {
   v.Field("name", "what the part is called", name);
   v.Choice("kind", "rigid: one body; hose: a bending chain of links", kind, {"rigid", "hose"});
   v.Field("radius_m", "outer radius", radius_m, {0.003, 0.04});
-  v.Field("length_m", "length along the centerline", length_m, {0.05, 2.0});
+  v.Field("length_m", "length along the centerline, from tip to tip", length_m, {0.05, 2.0});
   v.Field("mass_kg", "mass of one tube", mass_kg, {kMinMass_kg, kMaxMass_kg});
-  v.Field("friction", "nominal friction, tube on tube and on the bin", friction, {0.01, 3.0});
+  v.Field("friction", "nominal friction, tube on tube, on the bin and on the tray", friction,
+          {0.01, 3.0});
   v.Field("friction_range", "friction is drawn between these", friction_range, 2, {0.01, 3.0});
   v.Field("bending_stiffness_Nm2", "E times I, hoses only", bending_stiffness_Nm2,
           {kMinStiffness_Nm2, kMaxStiffness_Nm2});
   v.Field("bending_stiffness_range_Nm2", "bending stiffness is drawn between these",
           bending_stiffness_range_Nm2, 2, {kMinStiffness_Nm2, kMaxStiffness_Nm2});
-  v.Field("links", "rigid links of a hose", links, {8, 12});
+  v.Field("loss_factor", "share of elastic energy that a swing loses per radian, hoses only",
+          loss_factor, {0.0, 2.0});
+  v.Field("loss_factor_range", "loss factor is drawn between these", loss_factor_range, 2,
+          {0.0, 2.0});
+  v.Field("links", "rigid links of a hose", links, {8, 40});
   v.Choice("shape",
            "how random shapes are drawn: arcs (planar bends), hooks (a bend near each end), "
            "polyline (corners), fixed (centerline_m)",

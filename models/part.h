@@ -37,13 +37,17 @@ struct Part {
   std::string name = "pvc_a";
   std::string kind = "rigid";  ///< "rigid" | "hose"
   double radius_m = 0.0125;    ///< Outer.
-  double length_m = 0.50;      ///< Along the centerline.
+  double length_m = 0.50;      ///< Along the centerline, from tip to tip.
   double mass_kg = 0.055;
-  double friction = 0.3;  ///< Tube on tube and on the bin, nominal.
-  std::vector<double> friction_range = {0.2, 0.5};
-  double bending_stiffness_Nm2 = 0.15;  ///< EI, hoses only.
+  double friction = 0.3;  ///< Tube on tube, on the bin and on the tray, nominal.
+  std::vector<double> friction_range = {0.2, 0.5};  ///< Of each of the three.
+  double bending_stiffness_Nm2 = 0.15;              ///< EI, hoses only.
   std::vector<double> bending_stiffness_range_Nm2 = {0.05, 0.30};
-  int links = 10;  ///< Rigid links of a hose's chain, 8 to 12.
+  /// Share of the elastic energy that a swing loses per radian, hoses only; twice the damping ratio
+  /// of the first free bending mode.
+  double loss_factor = 0.15;
+  std::vector<double> loss_factor_range = {0.10, 0.20};
+  int links = 10;  ///< Rigid links of a hose's chain, 8 to 40.
   /// How random shapes are drawn: "arcs" (planar bends over the whole length), "hooks" (a bend of
   /// total/2 near each end, radius 50 mm, planes turned), "polyline" (the public set's corners),
   /// "fixed" (every tube is bent like centerline_m).

@@ -13,6 +13,9 @@ struct Order {
   RoundPhysics physics;
 };
 
+/// The part as tube `id` of the batch has it: its own radius, length and mass.
+Part SpecimenPart(const Order& order, int id);
+
 /// A tube of the part in the shape `shape` (own frame) at X_NShape; a hose's rest shape is `shape`.
 PileTube MakeTube(const Part& part, int id, const Polyline& shape, const RigidTransform& X_NShape);
 

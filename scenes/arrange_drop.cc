@@ -59,10 +59,11 @@ SettleResult Drop(const Order& order, RandomStream stream) {
   Pile pile = EmptyPile(order);
   std::unique_ptr<PileScene> scene;
   for (int i = 0; i < order.count; ++i) {
-    const Polyline shape = DrawShape(order.part, stream);
+    const Part part = SpecimenPart(order, i + 1);
+    const Polyline shape = DrawShape(part, stream);
     RigidTransform X_NShape = DrawPose(order, shape, stream);
     X_NShape.translation().z() += kDropGap_m + (scene ? scene->Top() : 0.0);
-    pile.tubes.push_back(MakeTube(order.part, i + 1, shape, X_NShape));
+    pile.tubes.push_back(MakeTube(part, i + 1, shape, X_NShape));
     // A new scene with one tube more; those before keep their motion.
     auto next = std::make_unique<PileScene>(pile, order.physics);
     if (scene) next->CopyStateOfFirst(*scene);

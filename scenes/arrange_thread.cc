@@ -51,7 +51,8 @@ struct Meeting {
 
 // A tube settled alone on a wide floor.
 std::optional<PileTube> LayAlone(const Order& order, int id, RandomStream& stream) {
-  const Polyline shape = DrawShape(order.part, stream);
+  const Part part = SpecimenPart(order, id);
+  const Polyline shape = DrawShape(part, stream);
   Pile alone = EmptyPile(order);
   alone.bin.size_m = {kLayingBin_m, kLayingBin_m, 0.05};
   const double roll = stream.Uniform(0.0, 2 * kPi);
@@ -59,7 +60,7 @@ std::optional<PileTube> LayAlone(const Order& order, int id, RandomStream& strea
   double lowest = 0.0;
   for (const Vector3& p : Transformed(X_NShape, shape)) lowest = std::min(lowest, p.z());
   X_NShape.translation().z() = order.part.radius_m + 0.002 - lowest;
-  alone.tubes = {MakeTube(order.part, id, shape, X_NShape)};
+  alone.tubes = {MakeTube(part, id, shape, X_NShape)};
   const SettleResult result = SettlePile(alone, order.physics);
   if (result.status != SettleStatus::kSettled) return std::nullopt;
   PileTube tube = result.pile.tubes[0];

@@ -17,9 +17,9 @@ mjsGeom* AddGeom(mjSpec& spec, const std::string& name, mjtGeom type, const Rigi
   }
   geom->rgba[3] = 1.0f;
   geom->condim = 4;
+  geom->priority = 1;  // The bin's friction and not the larger of both sides.
   geom->friction[0] = options.friction;
   geom->friction[1] = 0.002;
-  geom->friction[2] = 1e-4;
   geom->solref[0] = options.contact_time_s;
   geom->solref[1] = 1.0;
   geom->solimp[0] = 0.95;

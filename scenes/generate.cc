@@ -21,6 +21,15 @@ PileTube MakeTube(const Part& part, int id, const Polyline& shape, const RigidTr
   return tube;
 }
 
+Part SpecimenPart(const Order& order, int id) {
+  const Specimen specimen = order.physics.SpecimenOf(id);
+  Part part = order.part;
+  part.radius_m *= specimen.radius;
+  part.length_m *= specimen.length;
+  part.mass_kg *= specimen.mass;
+  return part;
+}
+
 Pile EmptyPile(const Order& order) {
   Pile pile;
   pile.bin = order.bin;

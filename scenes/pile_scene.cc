@@ -22,13 +22,13 @@ constexpr double kFallen_m = -0.03;  // Centre of mass below the floor's lower f
 PileSpec MakePileSpec(const Pile& pile, const RoundPhysics& physics, const EngineOptions& engine) {
   PileSpec out{MakeSpec(engine), {}};
   BinBodyOptions bin;
-  bin.friction = physics.tube_friction;
+  bin.friction = physics.bin_friction;
   AddBin(*out.spec, pile.bin, bin);
   AddGround(*out.spec, Translation(0, 0, -kGroundBelowFloor_m), bin);
-  const TubeBodyOptions options =
-      MakeTubeBodyOptions(pile.part, physics, RigidTransform::Identity());
   for (const PileTube& tube : pile.tubes) {
-    out.tubes.emplace_back(*out.spec, "tube" + std::to_string(tube.id), tube, options);
+    out.tubes.emplace_back(
+        *out.spec, "tube" + std::to_string(tube.id), tube,
+        MakeTubeBodyOptions(pile.part, physics, RigidTransform::Identity(), tube.id));
   }
   return out;
 }

@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <limits>
 
 #include "models/base/error.h"
-#include "models/base/rotation.h"
 #include "scenes/engine/mj_handles.h"
+#include "scenes/rod/rod_frames.h"
 
 namespace tubetwin {
 namespace {
 
-constexpr double kDampingTime_s = 0.02;  // Joint damping over stiffness: loss factor of EPDM.
-constexpr double kArmature_kgm2 = 1e-5;  // Steadies the light links; 3 % of a link's own inertia.
-constexpr double kRollingFriction_m = 1e-4;
+constexpr double kArmature_kgm2 = 1e-6;  // Steadies the light links; slows bending by 2 %.
 // Losses of a rolling tube, N m s/rad: without them a bent tube on two supports swings about its
 // own axis for minutes. As large as 0.2 mm of rolling friction at 5 rad/s; on anything but rolling
 // (other axes, falling) its time constant is beyond 50 s.
@@ -29,58 +26,6 @@ Matrix3 PieceInertia(double mass_kg, double length_m, double radius_m, double ax
   const double across = 0.5 * axial + mass_kg * length_m * length_m / 12.0;
   const Matrix3 along = direction * direction.transpose();
   return axial * along + across * (Matrix3::Identity() - along);
-}
-
-std::vector<Vector3> Tangents(const Polyline& line) {
-  std::vector<Vector3> tangents;
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    tangents.push_back((line[i + 1] - line[i]).normalized());
-  }
-  return tangents;
-}
-
-// Twist-free frames along the links: z along the link, each turned from the one before by the
-// smallest rotation.
-std::vector<Matrix3> TwistFreeFrames(const std::vector<Vector3>& tangents) {
-  std::vector<Matrix3> frames(tangents.size());
-  frames[0].col(2) = tangents[0];
-  frames[0].col(0) = tangents[0].unitOrthogonal();
-  frames[0].col(1) = tangents[0].cross(frames[0].col(0));
-  for (std::size_t i = 1; i < tangents.size(); ++i) {
-    const Matrix3 turn = RotationBetween(tangents[i - 1], tangents[i]).toRotationMatrix();
-    frames[i] = turn * frames[i - 1];
-    frames[i].col(2) = tangents[i];
-  }
-  return frames;
-}
-
-// Bend between link i and i + 1 as a rotation vector in the frame's x and y.
-std::complex<double> Bend(const std::vector<Matrix3>& frames, std::size_t i) {
-  const Vector3 axis = frames[i].col(2).cross(frames[i + 1].col(2));
-  const double sine = axis.norm();
-  if (sine < 1e-12) return 0.0;
-  const double angle = std::atan2(sine, frames[i].col(2).dot(frames[i + 1].col(2)));
-  const Vector3 bend = axis * (angle / sine);
-  return {bend.dot(frames[i].col(0)), bend.dot(frames[i].col(1))};
-}
-
-// Frames of the rest shape, turned about the hose's own axis so that the bending from rest to
-// `current` is smallest.
-std::vector<Matrix3> RestFrames(const std::vector<Matrix3>& current, const Polyline& rest) {
-  std::vector<Matrix3> frames = TwistFreeFrames(Tangents(rest));
-  std::complex<double> sum = 0.0;
-  for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
-    sum += Bend(current, i) * std::conj(Bend(frames, i));
-  }
-  const double turn_rad = std::abs(sum) > 1e-9 ? -std::arg(sum) : 0.0;
-  for (Matrix3& frame : frames) frame = frame * RotZ(turn_rad);
-  return frames;
-}
-
-// Angles about x, then y of the child that bring its z from `X_PC`'s to `tangent_P`.
-std::array<double, 2> HingeAngles(const Matrix3& R_PC, const Vector3& tangent_P) {
-  const Vector3 v = R_PC.transpose() * tangent_P;
-  return {std::atan2(-v.y(), v.z()), std::asin(std::clamp(v.x(), -1.0, 1.0))};
 }
 
 void SetMass(mjsBody* body, double mass_kg, const Vector3& centre, const Vector3& inertia) {
@@ -99,13 +44,13 @@ void AddFree(mjsBody* body, const std::string& name) {
 }
 
 void AddHinge(mjsBody* body, const std::string& name, const Vector3& axis, double stiffness,
-              double rest_rad) {
+              double damping_time_s, double rest_rad) {
   mjsJoint* joint = mjs_addJoint(body, nullptr);
   SetName(joint->element, name);
   joint->type = mjJNT_HINGE;
   for (int k = 0; k < 3; ++k) joint->axis[k] = axis[k];
   joint->stiffness[0] = stiffness;
-  joint->damping[0] = kDampingTime_s * stiffness;
+  joint->damping[0] = damping_time_s * stiffness;
   joint->armature = kArmature_kgm2;
   joint->springref = rest_rad;
 }
@@ -117,19 +62,23 @@ struct TubeBody::HoseChain {
   int root = 0;
   Vector3 root_origin = Vector3::Zero();  // First node of the root link.
   double kg_per_m = 0.0;
-  std::vector<Matrix3> frames, rest_frames;  // z along each link.
+  double damping_time_s = 0.0;  // Joint damping over stiffness.
+  RodFrames frames;
   std::vector<double> lengths_m;
+  std::vector<std::array<double, 2>> solid_m;  // Of each link, from its first node; none: empty.
   std::vector<mjsBody*> bodies;
 };
 
 TubeBodyOptions MakeTubeBodyOptions(const Part& part, const RoundPhysics& physics,
-                                    const RigidTransform& X_WN) {
+                                    const RigidTransform& X_WN, int tube_id) {
+  const Specimen specimen = physics.SpecimenOf(tube_id);
   TubeBodyOptions options;
   options.X_WN = X_WN;
   options.hose = part.is_hose();
   options.mass_scale = physics.mass_scale;
-  options.friction = physics.tube_friction;
-  options.bending_stiffness_Nm2 = physics.bending_stiffness_Nm2;
+  options.friction = physics.tube_friction * specimen.friction;
+  options.bending_stiffness_Nm2 = physics.bending_stiffness_Nm2 * specimen.stiffness;
+  options.loss_factor = physics.loss_factor * specimen.loss;
   if (part.colour_rgb.size() == 3) {
     std::copy(part.colour_rgb.begin(), part.colour_rgb.end(), options.colour_rgb.begin());
   }
@@ -147,9 +96,10 @@ TubeBody::TubeBody(mjSpec& spec, const std::string& name, const PileTube& tube,
   }
 }
 
-void TubeBody::AddCapsule(mjsBody* body, int index, const Vector3& from, const Vector3& to) const {
+void TubeBody::AddCapsule(mjsBody* body, int index, const Vector3& from, const Vector3& to) {
   mjsGeom* geom = mjs_addGeom(body, nullptr);
-  SetName(geom->element, name_ + "_g" + std::to_string(index));
+  geom_names_.push_back(name_ + "_g" + std::to_string(index));
+  SetName(geom->element, geom_names_.back());
   geom->type = mjGEOM_CAPSULE;
   geom->size[0] = tube_.radius_m;
   for (int k = 0; k < 3; ++k) {
@@ -162,7 +112,6 @@ void TubeBody::AddCapsule(mjsBody* body, int index, const Vector3& from, const V
   geom->condim = 4;
   geom->friction[0] = options_.friction;
   geom->friction[1] = options_.torsion_m;
-  geom->friction[2] = kRollingFriction_m;
   geom->solref[0] = options_.contact_time_s;
   geom->solref[1] = 1.0;
   geom->solimp[0] = 0.95;
@@ -197,8 +146,9 @@ void TubeBody::BuildRigid(mjSpec& spec) {
   AddFree(body, name_ + "_free");
   SetMass(body, mass_kg, Vector3::Zero(), solver.eigenvalues());
   for (const Vector3& node : Transformed(X_WBody.inverse(), line)) nodes_.push_back({0, node});
-  for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
-    AddCapsule(body, static_cast<int>(i), nodes_[i].p_Body, nodes_[i + 1].p_Body);
+  for (const AxisPiece& solid : PiecesWithin(line, tube_.radius_m)) {
+    AddCapsule(body, static_cast<int>(solid.piece), X_WBody.inverse() * solid.from,
+               X_WBody.inverse() * solid.to);
   }
 }
 
@@ -210,24 +160,33 @@ void TubeBody::AddLink(mjSpec& spec, HoseChain& chain, int i, int parent) {
   SetName(body->element, body_names_[i]);
   const double length_m = chain.lengths_m[i];
   if (parent < 0) {
-    SetPose(MakeTransform(chain.frames[i], chain.root_origin), body->pos, body->quat);
+    SetPose(MakeTransform(chain.frames.current[i], chain.root_origin), body->pos, body->quat);
     AddFree(body, name_ + "_free");
   } else {
-    const Matrix3 R_PC = chain.frames[parent].transpose() * chain.frames[i];
+    const Matrix3 R_PC = chain.frames.current[parent].transpose() * chain.frames.current[i];
     const double parent_m = chain.lengths_m[parent];
     const double z = forward ? parent_m : (parent < chain.root ? -parent_m : 0.0);
     SetPose(MakeTransform(R_PC, Vector3(0, 0, z)), body->pos, body->quat);
-    const double stiffness = options_.bending_stiffness_Nm2 / (0.5 * (length_m + parent_m));
-    const std::array<double, 2> angles =
-        HingeAngles(R_PC, chain.rest_frames[parent].transpose() * chain.rest_frames[i].col(2));
-    AddHinge(body, body_names_[i] + "_x", Vector3::UnitX(), stiffness, angles[0]);
-    AddHinge(body, body_names_[i] + "_y", Vector3::UnitY(), stiffness, angles[1]);
+    const double joint_m = 0.5 * (length_m + parent_m), EI = options_.bending_stiffness_Nm2;
+    const std::array<double, 3> stiffness = {EI / joint_m, EI / joint_m,
+                                             TorsionalStiffness(EI) / joint_m};
+    const RodJoint joint =
+        JointBetween(R_PC, chain.frames.rest[parent].transpose() * chain.frames.rest[i]);
+    const char* suffix[3] = {"_x", "_y", "_z"};
+    for (int k = 0; k < 3; ++k) {
+      AddHinge(body, body_names_[i] + suffix[k], joint.axes.col(k), stiffness[k],
+               chain.damping_time_s, joint.rest_rad[k]);
+    }
   }
   const Vector3 near = Vector3::Zero(), far(0, 0, forward ? length_m : -length_m);
   const double mass_kg = chain.kg_per_m * length_m;
   SetMass(body, mass_kg, 0.5 * far,
           PieceInertia(mass_kg, length_m, tube_.radius_m, kHoseAxial, Vector3::UnitZ()).diagonal());
-  AddCapsule(body, i, forward ? near : far, forward ? far : near);
+  // The frame's z runs along the tube, from the link's own first node or up to its last one.
+  const double origin_m = forward ? 0.0 : length_m;
+  if (const auto& [from_m, to_m] = chain.solid_m[i]; from_m < to_m) {
+    AddCapsule(body, i, Vector3(0, 0, from_m - origin_m), Vector3(0, 0, to_m - origin_m));
+  }
   if (parent < 0) nodes_[i] = {i, near};
   nodes_[forward ? i + 1 : i] = {i, far};
 }
@@ -241,14 +200,23 @@ void TubeBody::BuildHose(mjSpec& spec) {
   chain.root = root;
   chain.root_origin = line[root];
   chain.kg_per_m = tube_.mass_kg * options_.mass_scale / Length(line);
-  chain.frames = TwistFreeFrames(Tangents(line));
-  chain.rest_frames = RestFrames(chain.frames, rest);
+  const double EI = options_.bending_stiffness_Nm2, mass_kg = tube_.mass_kg * options_.mass_scale;
+  chain.frames = LeastEnergyFrames(line, rest, {EI, TorsionalStiffness(EI)});
+  // Implicit steps damp on their own, by omega times half a step: the joints do the rest.
+  chain.damping_time_s =
+      std::max(0.0, options_.loss_factor / FirstFreeBending(EI, mass_kg, Length(line)) -
+                        spec.option.timestep);
   chain.bodies.resize(links);
   for (int i = 0; i < links; ++i) {
     chain.lengths_m.push_back((line[i + 1] - line[i]).norm());
     body_names_.push_back(name_ + "_" + std::to_string(i));
   }
   nodes_.resize(line.size());
+  chain.solid_m.assign(links, {0.0, 0.0});
+  for (const AxisPiece& solid : PiecesWithin(line, tube_.radius_m)) {
+    chain.solid_m[solid.piece] = {(solid.from - line[solid.piece]).norm(),
+                                  (solid.to - line[solid.piece]).norm()};
+  }
   AddLink(spec, chain, root, -1);
   for (int i = root + 1; i < links; ++i) AddLink(spec, chain, i, i - 1);
   for (int i = root - 1; i >= 0; --i) AddLink(spec, chain, i, i + 1);
@@ -265,9 +233,7 @@ void TubeBody::Bind(const mjModel& model) {
   bodies_.clear();
   geoms_.clear();
   for (const std::string& name : body_names_) bodies_.push_back(IdOf(model, mjOBJ_BODY, name));
-  for (std::size_t i = 0; i + 1 < nodes_.size(); ++i) {
-    geoms_.push_back(IdOf(model, mjOBJ_GEOM, name_ + "_g" + std::to_string(i)));
-  }
+  for (const std::string& name : geom_names_) geoms_.push_back(IdOf(model, mjOBJ_GEOM, name));
 }
 
 Polyline TubeBody::Centerline_W(const mjData& data) const {

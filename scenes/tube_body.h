@@ -17,29 +17,32 @@ struct TubeBodyOptions {
   RigidTransform X_WN = RigidTransform::Identity();  ///< Bin in the scene's world.
   bool hose = false;
   double mass_scale = 1.0;
-  double friction = 0.3;  ///< Sliding; contacts take the larger of both sides' values.
+  /// Sliding, tube on tube: the larger of both sides. What else a tube touches has a higher
+  /// priority and its own friction.
+  double friction = 0.3;
   double torsion_m = 0.002;
   double bending_stiffness_Nm2 = 0.15;  ///< EI, hoses only.
+  double loss_factor = 0.15;            ///< Hoses only.
   double contact_time_s = 0.005;        ///< Time constant of contacts.
   std::array<double, 3> colour_rgb = {0.85, 0.85, 0.82};
 };
 
-/// Options of a part's tubes under one round's physics.
+/// Options of one of a part's tubes under one round's physics.
 TubeBodyOptions MakeTubeBodyOptions(const Part& part, const RoundPhysics& physics,
-                                    const RigidTransform& X_WN);
+                                    const RigidTransform& X_WN, int tube_id);
 
 /// One tube in a MuJoCo scene, used by piles, evaluator and twin cell alike.
 ///
-/// Shape: capsules from node to node of the centerline, so the material reaches one radius beyond
-/// its first and last node, and `Length(centerline)` is the tube's length. Rigid tube: one body
-/// `NAME` with a free joint, its frame at the centre of mass along the principal axes. Hose: one
-/// body `NAME_i` per link, the middle one free, each other hinged about two axes to its neighbour
-/// towards the middle (no twist). The scene starts in the shape of `centerline_N`, while the joint
-/// springs pull towards `rest_centerline_N` (how the rest shape is turned about the hose's own axis
-/// is not stored: the turn of least bending energy is taken). Stiffness EI / l per joint, damping
-/// 0.02 s times that, armature 1e-5 kg m^2: within 6 % of beam theory for 50 mm links. A free joint
-/// loses 2e-5 N m s/rad, which ends rolling. Geoms are
-/// `NAME_gi`.
+/// Shape: capsules along the centerline, with round ends that reach just to its first and last
+/// node: `Length(centerline)` is the tube's length from tip to tip. Rigid tube: one body `NAME`
+/// with a free joint, its frame at the centre of mass along the principal axes. Hose: one body
+/// `NAME_i` per link, the middle one free, each other hinged to its neighbour towards the middle by
+/// two bends and a twist. The scene starts in the shape of `centerline_N`, while the joint springs
+/// pull towards `rest_centerline_N` (how the links are turned about the hose's own axis is not
+/// stored: the turns of least elastic energy are taken). Stiffness EI / l and GJ / l per joint,
+/// armature 1e-6 kg m^2; damping in proportion, so that the first free bending mode has half the
+/// loss factor as its damping ratio (higher modes have more). A free joint loses 2e-5 N m s/rad,
+/// which ends rolling. Geoms are `NAME_gi`.
 ///
 /// Add to a spec, compile, Bind, then read. Const calls are thread safe (one mjData each).
 class TubeBody {
@@ -88,12 +91,12 @@ class TubeBody {
   /// Adds link i below its neighbour towards the root (-1: it is the root). The link's frame sits
   /// at the node that both share (the root's at its first node), z forward along the tube.
   void AddLink(mjSpec& spec, HoseChain& chain, int i, int parent);
-  void AddCapsule(mjsBody* body, int index, const Vector3& from, const Vector3& to) const;
+  void AddCapsule(mjsBody* body, int index, const Vector3& from, const Vector3& to);
 
   std::string name_;
   PileTube tube_;
   TubeBodyOptions options_;
-  std::vector<std::string> body_names_;
+  std::vector<std::string> body_names_, geom_names_;
   std::vector<int> bodies_, geoms_;
   /// Body (index into bodies_) and place in its frame of every node.
   std::vector<Attachment> nodes_;

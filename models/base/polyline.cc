@@ -199,4 +199,27 @@ Polyline Transformed(const RigidTransform& X_AB, const Polyline& line_B) {
   return out;
 }
 
+std::vector<AxisPiece> PiecesWithin(const Polyline& line, double radius_m) {
+  constexpr double kShortest_m = 1e-4;  // The engine wants ends of a capsule apart.
+  const std::vector<double> at = ArcLengths(line);
+  const double length_m = at.back();
+  const double end_m = std::min(radius_m, 0.5 * (length_m - kShortest_m));
+  std::vector<AxisPiece> pieces;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    const double from = std::max(at[i], end_m), to = std::min(at[i + 1], length_m - end_m);
+    if (to - from < 0.999 * kShortest_m) continue;
+    const Vector3 step = (line[i + 1] - line[i]) / (at[i + 1] - at[i]);
+    pieces.push_back({i, line[i] + (from - at[i]) * step, line[i] + (to - at[i]) * step});
+  }
+  if (pieces.empty()) {
+    // The middle of a ball-like tube sits on a node.
+    std::size_t i = 0;
+    while (i + 2 < at.size() && at[i + 1] < 0.5 * length_m) ++i;
+    const Vector3 half = 0.5 * kShortest_m * (line[i + 1] - line[i]).normalized();
+    const Vector3 middle = PointAt(line, 0.5 * length_m);
+    pieces.push_back({i, middle - half, middle + half});
+  }
+  return pieces;
+}
+
 }  // namespace tubetwin

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "models/base/frames.h"
@@ -63,6 +64,15 @@ struct LinePair {
   double t_m = 0.0;
 };
 LinePair ClosestOfLines(const Polyline& a, const Polyline& b);
+
+/// Part of a tube's axis that is `radius_m` or more from both ends, piece by piece: the tube is all
+/// within one radius of it, and reaches from tip to tip of `line` with round ends. Nothing where a
+/// piece belongs to the ends wholly. A tube no longer than thick keeps its middle.
+struct AxisPiece {
+  std::size_t piece = 0;  ///< Between nodes `piece` and `piece` + 1.
+  Vector3 from = Vector3::Zero(), to = Vector3::Zero();
+};
+std::vector<AxisPiece> PiecesWithin(const Polyline& line, double radius_m);
 
 /// Every point mapped by X_AB: from frame B to frame A.
 Polyline Transformed(const RigidTransform& X_AB, const Polyline& line_B);

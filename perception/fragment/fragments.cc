@@ -125,6 +125,28 @@ double CapEvidence(const FragmentEnd& end, const std::vector<SurfacePoint>& poin
                    static_cast<double>(straight_out.size()) / (0.2 * cells)});
 }
 
+/// How far the surface reaches beyond an end of the axis: of a round end all surface points have
+/// their axis point at its centre. 0 to r.
+double TipBeyond(const FragmentEnd& end, const std::vector<SurfacePoint>& points,
+                 const std::vector<int>& chosen, double r) {
+  constexpr std::size_t kFewest = 20;
+  constexpr double kNearAxis = 1.1;  // Radii from the axis' line.
+  constexpr double kShare = 0.99;    // What lies beyond is noise.
+  std::vector<double> beyond;
+  for (const int i : chosen) {
+    const SurfacePoint& point = points[static_cast<std::size_t>(i)];
+    const Vector3 d = point.p_N.cast<double>() - end.p_N;
+    const double s = d.dot(end.outward_N);
+    if (s <= 0.0 || s > 1.5 * r || (d - s * end.outward_N).norm() > kNearAxis * r) continue;
+    beyond.push_back(s);
+  }
+  if (beyond.size() < kFewest) return 0.0;
+  const auto last =
+      beyond.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(beyond.size() - 1));
+  std::nth_element(beyond.begin(), last, beyond.end());
+  return std::min(r, *last);
+}
+
 /// The refined fragment of one trace, or one of length 0 when it is no tube.
 Fragment FitTrace(const Trace& trace, const std::vector<SurfacePoint>& points,
                   const std::vector<int>& chosen, double r) {
@@ -154,6 +176,7 @@ Fragment FitTrace(const Trace& trace, const std::vector<SurfacePoint>& points,
     e.p_N = end == 0 ? line.front() : line.back();
     FitEnd(line, end, e);
     e.cap = CapEvidence(e, points, chosen, r);
+    e.tip_m = TipBeyond(e, points, chosen, r);
   }
   return out;
 }

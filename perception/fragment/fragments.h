@@ -17,6 +17,9 @@ struct FragmentEnd {
   Vector3 outward_N = Vector3::UnitX();  ///< Unit tangent, out of the fragment.
   /// 0..1: how much of a closed end (points whose normal looks outward) is seen.
   double cap = 0.0;
+  /// How far the surface goes on beyond p_N: up to one radius where a round end is seen, nothing
+  /// where the tube is cut off or goes on unseen.
+  double tip_m = 0.0;
   Vector3 bend_N = Vector3::Zero();  ///< Curvature vector (1/m) of the curve, going outward.
 };
 

@@ -1,6 +1,7 @@
 #include "perception/joining/assemble.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "perception/joining/occluded_extension.h"
@@ -59,10 +60,15 @@ double SeenLength(const PerceivedTube& tube) {
   return sum;
 }
 
+const FragmentEnd& OuterEnd(const Chain& chain, const std::vector<Fragment>& fragments, int side) {
+  const int end = side == 0 ? chain.ends.front() : chain.ends.back() ^ 1;
+  return fragments[static_cast<std::size_t>(end / 2)].ends[static_cast<std::size_t>(end % 2)];
+}
+
 /// Prolongs a tube's open ends by `lack_m` in all, evenly as far as both have room, into what no
-/// view saw.
-void Complete(PerceivedTube& tube, const Chain& chain, const OccludedExtensions& extensions,
-              double lack_m) {
+/// view saw. At which ends.
+std::array<bool, 2> Complete(PerceivedTube& tube, const Chain& chain,
+                             const OccludedExtensions& extensions, double lack_m) {
   Polyline added[2] = {extensions.Find(chain.ends.front(), lack_m, true),
                        extensions.Find(chain.ends.back() ^ 1, lack_m, true)};
   const auto wanted = static_cast<std::size_t>(std::ceil(lack_m / kNodeStep_m - 1e-9));
@@ -75,6 +81,26 @@ void Complete(PerceivedTube& tube, const Chain& chain, const OccludedExtensions&
   tube.centerline_N.insert(tube.centerline_N.begin(), added[0].begin(), added[0].end());
   tube.node_visible.insert(tube.node_visible.begin(), added[0].size(), 0);
   for (const Vector3& q : added[1]) Append(tube, q, false);
+  return {!added[0].empty(), !added[1].empty()};
+}
+
+/// Takes the ends of the centerline that were not prolonged to the tips that were seen.
+void ReachTips(PerceivedTube& tube, const Chain& chain, const std::vector<Fragment>& fragments,
+               const std::array<bool, 2>& prolonged) {
+  for (int side = 0; side < 2; ++side) {
+    const FragmentEnd& end = OuterEnd(chain, fragments, side);
+    const int steps = static_cast<int>(std::ceil(end.tip_m / kNodeStep_m - 1e-9));
+    if (prolonged[static_cast<std::size_t>(side)]) continue;
+    for (int k = 1; k <= steps; ++k) {
+      const Vector3 p = end.p_N + end.tip_m * k / steps * end.outward_N;
+      if (side == 1) {
+        Append(tube, p, true);
+        continue;
+      }
+      tube.centerline_N.insert(tube.centerline_N.begin(), p);
+      tube.node_visible.insert(tube.node_visible.begin(), 1);
+    }
+  }
 }
 
 /// 0..1 from how well the pieces fit, how much better this way to join them is than the next best,
@@ -146,12 +172,15 @@ std::vector<PerceivedTube> AssembleTubes(const std::vector<Chain>& chains,
     if (seen_m < min_m || !IsRound(*chain, fragments, space.radius_m())) continue;
     if (HasOtherRadius(*chain, fragments, space.radius_m())) continue;
     if (!TouchesBin(tube.centerline_N, bin)) continue;
-    const double lack_m = tube_length_m - chain->length_m;
-    if (lack_m > kLack_m) Complete(tube, *chain, extensions, lack_m);
+    double lack_m = tube_length_m - chain->length_m;
+    for (int side = 0; side < 2; ++side) lack_m -= OuterEnd(*chain, fragments, side).tip_m;
+    std::array<bool, 2> prolonged = {false, false};
+    if (lack_m > kLack_m) prolonged = Complete(tube, *chain, extensions, lack_m);
+    ReachTips(tube, *chain, fragments, prolonged);
     tube.id = static_cast<int>(out.size());
     tube.radius_m = space.radius_m();
     tube.length_m = Length(tube.centerline_N);
-    tube.visible_fraction = std::clamp(seen_m / tube.length_m, 0.0, 1.0);
+    tube.visible_fraction = std::clamp(SeenLength(tube) / tube.length_m, 0.0, 1.0);
     tube.confidence = Confidence(tube, *chain, fragments, bridges, tube_length_m);
     out.push_back(std::move(tube));
   }

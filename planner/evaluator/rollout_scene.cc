@@ -113,9 +113,9 @@ RolloutScene::RolloutScene(const std::vector<PileTube>& tubes, const Part& part,
   AddGround(*spec, Translation(0, 0, -kTableBelow_m), bin_options);
 
   RoundPhysics physics = NominalPhysics(part);
-  physics.tube_friction = friction;
   physics.bending_stiffness_Nm2 = bending_stiffness_Nm2;
-  TubeBodyOptions tube_options = MakeTubeBodyOptions(part, physics, RigidTransform::Identity());
+  physics.tube_friction = friction;
+  TubeBodyOptions tube_options = MakeTubeBodyOptions(part, physics, RigidTransform::Identity(), 0);
   tube_options.contact_time_s = contact_s;
   tubes_.reserve(tubes.size());
   for (std::size_t i = 0; i < tubes.size(); ++i) {
@@ -192,8 +192,13 @@ void RolloutScene::AddFingers(mjsBody& hand, const GripperGeometry& gripper, dou
     for (int k = 0; k < 3; ++k) geom->pos[k] = box.X_AB.translation()[k];
     for (int k = 0; k < 3; ++k) geom->size[k] = box.half_m[k];
     geom->mass = 0.0;
+    geom->priority = 1;
+    geom->condim = 4;
     geom->friction[0] = kHandFriction;
+    geom->friction[1] = 0.002;
     geom->solref[0] = contact_s;
+    geom->solimp[0] = 0.95;
+    geom->solimp[1] = 0.99;
     geom->contype = kHandBit;
     geom->conaffinity = 0;
   }

@@ -35,5 +35,23 @@ TEST_CASE("The distance of two segments equals the best of a fine grid", "[unit]
   }
 }
 
+TEST_CASE("The pieces of a tube within its round ends reach from tip to tip", "[unit]") {
+  const double kRounding_m = 1e-9, radius_m = 0.01;
+  const Polyline line = {{0, 0, 0}, {0.004, 0, 0}, {0.2, 0, 0}, {0.2, 0.3, 0}, {0.2, 0.306, 0}};
+  const std::vector<AxisPiece> pieces = PiecesWithin(line, radius_m);
+  REQUIRE(pieces.size() == 2);  // The first and the last piece are shorter than the radius.
+  CHECK(pieces[0].piece == 1);
+  CHECK((pieces[0].from - Vector3(radius_m, 0, 0)).norm() < kRounding_m);
+  CHECK((pieces[1].to - Vector3(0.2, 0.306 - radius_m, 0)).norm() < kRounding_m);
+  // No longer than thick: a ball in the middle, also where a node is there.
+  for (const double nodes : {2, 3}) {
+    const Polyline ball = ResampleCount({{0, 0, 0}, {0.015, 0, 0}}, static_cast<int>(nodes));
+    const std::vector<AxisPiece> middle = PiecesWithin(ball, radius_m);
+    REQUIRE(!middle.empty());
+    CHECK((middle.front().from - Vector3(0.0075, 0, 0)).norm() < 1e-4);
+    CHECK((middle.back().to - middle.front().from).norm() > 5e-5);
+  }
+}
+
 }  // namespace
 }  // namespace tubetwin

@@ -83,8 +83,8 @@ void AddPile(int tubes, const Bin& bin, RandomStream& stream, ScanGeometry& out)
       p.y() = std::clamp(p.y(), part.radius_m - bin.half_y_m(), bin.half_y_m() - part.radius_m);
       p.z() = std::max(p.z(), part.radius_m);
     }
-    for (std::size_t k = 1; k < line.size(); ++k) {
-      out.capsules.push_back({line[k - 1], line[k], part.radius_m, kLabelFirstTube, kAlbedo});
+    for (const AxisPiece& piece : PiecesWithin(line, part.radius_m)) {
+      out.capsules.push_back({piece.from, piece.to, part.radius_m, kLabelFirstTube, kAlbedo});
     }
   }
 }

@@ -82,9 +82,8 @@ ScanGeometry GeometryOf(const Pile& pile) {
   const auto albedo = static_cast<float>(pile.part.albedo());
   const auto gloss = static_cast<float>(pile.part.gloss);
   for (const PileTube& tube : pile.tubes) {
-    for (std::size_t i = 1; i < tube.centerline_N.size(); ++i) {
-      out.capsules.push_back({tube.centerline_N[i - 1], tube.centerline_N[i], tube.radius_m,
-                              kLabelFirstTube, albedo, gloss});
+    for (const AxisPiece& piece : PiecesWithin(tube.centerline_N, tube.radius_m)) {
+      out.capsules.push_back({piece.from, piece.to, tube.radius_m, kLabelFirstTube, albedo, gloss});
     }
   }
   const double x = pile.bin.half_x_m(), y = pile.bin.half_y_m(), h = 0.5 * pile.bin.wall_m();

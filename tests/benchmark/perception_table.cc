@@ -78,8 +78,8 @@ ScanGeometry GeometryOf(const Pile& pile) {
   ScanGeometry out;
   for (std::size_t k = 0; k < pile.tubes.size(); ++k) {
     const Polyline& line = pile.tubes[k].centerline_N;
-    for (std::size_t i = 1; i < line.size(); ++i) {
-      out.capsules.push_back({line[i - 1], line[i], pile.tubes[k].radius_m,
+    for (const AxisPiece& piece : PiecesWithin(line, pile.tubes[k].radius_m)) {
+      out.capsules.push_back({piece.from, piece.to, pile.tubes[k].radius_m,
                               kLabelFirstTube + static_cast<std::uint32_t>(k), 0.7f});
     }
   }

@@ -33,9 +33,8 @@ ScanGeometry Geometry() {
   const auto gloss = static_cast<float>(SevenTubes().part.gloss);
   for (const PileTube& tube : SevenTubes().tubes) {
     const Polyline line_B = Transformed(SevenTubes().bin.X_BN, tube.centerline_N);
-    for (std::size_t i = 1; i < line_B.size(); ++i) {
-      out.capsules.push_back(
-          {line_B[i - 1], line_B[i], tube.radius_m, kLabelFirstTube, albedo, gloss});
+    for (const AxisPiece& piece : PiecesWithin(line_B, tube.radius_m)) {
+      out.capsules.push_back({piece.from, piece.to, tube.radius_m, kLabelFirstTube, albedo, gloss});
     }
   }
   const Bin& bin = SevenTubes().bin;

@@ -159,5 +159,45 @@ TEST_CASE("Drawn physics stays in its ranges, spans them and depends on the stre
       Catch::Contains("physics.tube_friction has 1"));
 }
 
+TEST_CASE("Friction of each pair is drawn apart, and given ranges win", "[unit]") {
+  const Part hose = LoadPart("hose_b");
+  const RoundPhysics drawn = DrawPhysics({}, hose, RandomStream(1, 5, "physics"));
+  CHECK(drawn.bin_friction != drawn.tube_friction);
+  CHECK(drawn.tray_friction != drawn.bin_friction);
+  CHECK(drawn.loss_factor >= hose.loss_factor_range[0]);
+  CHECK(drawn.loss_factor < hose.loss_factor_range[1]);
+  PhysicsRanges ranges;
+  ranges.bin_friction = {0.1, 0.1};
+  ranges.tray_friction = {0.2, 0.2};
+  ranges.loss_factor = {0.3, 0.3};
+  const RoundPhysics given = DrawPhysics(ranges, hose, RandomStream(1, 5, "physics"));
+  CHECK(given.tube_friction == drawn.tube_friction);
+  CHECK(given.bin_friction == 0.1);
+  CHECK(given.tray_friction == 0.2);
+  CHECK(given.loss_factor == 0.3);
+}
+
+TEST_CASE("Tubes of one batch differ within their shares, each the same whoever asks", "[unit]") {
+  const Part hose = LoadPart("hose_b");
+  PhysicsRanges ranges;
+  ranges.specimen = {0.03, 0.01, 0.02, 0.2, 0.1, 0.3};
+  const RoundPhysics physics = DrawPhysics(ranges, hose, RandomStream(1, 5, "physics"));
+  double widest_mass = 0.0, widest_loss = 0.0;
+  for (int id = 0; id < 200; ++id) {
+    const Specimen one = physics.SpecimenOf(id);
+    CHECK(one.mass == physics.SpecimenOf(id).mass);
+    CHECK(std::abs(one.radius - 1.0) <= 0.01);
+    CHECK(std::abs(one.length - 1.0) <= 0.02);
+    CHECK(std::abs(one.stiffness - 1.0) <= 0.2);
+    CHECK(std::abs(one.friction - 1.0) <= 0.1);
+    widest_mass = std::max(widest_mass, std::abs(one.mass - 1.0));
+    widest_loss = std::max(widest_loss, std::abs(one.loss - 1.0));
+  }
+  CHECK(widest_mass > 0.027);
+  CHECK(widest_mass <= 0.03);
+  CHECK(widest_loss > 0.27);
+  CHECK(NominalPhysics(hose).SpecimenOf(7).mass == 1.0);
+}
+
 }  // namespace
 }  // namespace tubetwin

@@ -24,15 +24,21 @@ double LargestGap(const Pile& a, const Pile& b) {
   return gap_m;
 }
 
+// The axis of the solid: within the tube's round ends.
+Polyline CoreOf(const PileTube& tube) {
+  const std::vector<AxisPiece> pieces = PiecesWithin(tube.centerline_N, tube.radius_m);
+  Polyline core = {pieces.front().from};
+  for (const AxisPiece& piece : pieces) core.push_back(piece.to);
+  return core;
+}
+
 double DeepestOverlap(const Pile& pile) {
   double overlap_m = 0.0;
   for (std::size_t i = 0; i < pile.tubes.size(); ++i) {
-    for (const Vector3& p : pile.tubes[i].centerline_N) {
-      overlap_m = std::max(overlap_m, pile.tubes[i].radius_m - p.z());
-    }
+    const Polyline core = CoreOf(pile.tubes[i]);
+    for (const Vector3& p : core) overlap_m = std::max(overlap_m, pile.tubes[i].radius_m - p.z());
     for (std::size_t j = 0; j < i; ++j) {
-      const double distance_m =
-          ClosestOfLines(pile.tubes[i].centerline_N, pile.tubes[j].centerline_N).distance_m;
+      const double distance_m = ClosestOfLines(core, CoreOf(pile.tubes[j])).distance_m;
       overlap_m = std::max(overlap_m, pile.tubes[i].radius_m + pile.tubes[j].radius_m - distance_m);
     }
   }

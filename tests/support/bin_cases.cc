@@ -30,8 +30,8 @@ Bin DrawBin(RandomStream& stream) {
 }
 
 void AddLine(ScanGeometry& geometry, const Polyline& line_N, double radius_m) {
-  for (std::size_t i = 1; i < line_N.size(); ++i) {
-    geometry.capsules.push_back({line_N[i - 1], line_N[i], radius_m, kLabelFirstTube, kTubeAlbedo});
+  for (const AxisPiece& piece : PiecesWithin(line_N, radius_m)) {
+    geometry.capsules.push_back({piece.from, piece.to, radius_m, kLabelFirstTube, kTubeAlbedo});
   }
 }
 

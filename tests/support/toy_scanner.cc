@@ -89,9 +89,9 @@ Image Cast(const ToyScene& scene, int width, int height, double focal, const Rig
     }
   }
   for (std::size_t tube = 0; tube < scene.tubes_N.size(); ++tube) {
-    for (std::size_t s = 1; s < scene.tubes_N[tube].size(); ++s) {
-      const Vector3& a = scene.tubes_N[tube][s - 1];
-      const Vector3& b = scene.tubes_N[tube][s];
+    for (const AxisPiece& piece : PiecesWithin(scene.tubes_N[tube], scene.radius_m)) {
+      const Vector3& a = piece.from;
+      const Vector3& b = piece.to;
       double u0 = 1e9, u1 = -1e9, v0 = 1e9, v1 = -1e9;
       bool behind = false;
       for (const Vector3& p_N : {a, b}) {

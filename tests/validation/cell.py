@@ -1,6 +1,5 @@
 """The cell that the program exports (cell.xml of a result folder) in the stock engine."""
 
-import json
 import os
 import subprocess
 import time
@@ -17,13 +16,6 @@ FINGERS = ("finger_left", "finger_right")
 ASKED = {"tube_friction": 0.45, "bin_friction": 0.35, "tray_friction": 0.55, "pad_friction": 0.8,
          "pad_torsion_m": 0.001, "mass_scale": 1.0}
 ALIKE = ("mass", "radius", "length", "stiffness", "friction", "loss")
-
-
-def asked(lab):
-    """Values of [physics] that this program knows; it may draw bin and tray as one with the tubes."""
-    known = json.loads(lab.run("tubetwin", "config", "schema"))["properties"]["physics"]["properties"]
-    values = {key: value for key, value in ASKED.items() if key in known}
-    return values, ALIKE if "specimen" in known else ()
 
 
 def straight_part(lab, **changes):
@@ -45,9 +37,8 @@ def export(lab, part_path, lines):
         file.write("tube,index,x,y,z\n")
         for tube, line in enumerate(lines):
             file.writelines(f"{tube},{i},{p[0]:.9g},{p[1]:.9g},{p[2]:.9g}\n" for i, p in enumerate(line))
-    values, alike = asked(lab)
-    sets = [f"physics.{name}=[{value}, {value}]" for name, value in values.items()]
-    sets += [f"physics.specimen.{name}=0" for name in alike]
+    sets = [f"physics.{name}=[{value}, {value}]" for name, value in ASKED.items()]
+    sets += [f"physics.specimen.{name}=0" for name in ALIKE]
     sets += [f"pile.file={pile}", f"pile.part={part_path}"]
     command = [os.path.join(lab.programs, "tubetwin"), "run", "--seed", "1", "--out", out, "--force"]
     log = open(out + ".log", "w+")

@@ -156,7 +156,7 @@ FINGER = 0.3  # Bare aluminium of a finger's back: below what the tubes have amo
 
 def friction(lab):
     """The slope at which a straight tube slides along itself on each surface of the cell."""
-    model, values = pile_of_three(lab).model, cell.asked(lab)[0]
+    model, values = pile_of_three(lab).model, cell.ASKED
     for geom, name in (("tube1_g0", "tube"), ("bin_floor", "bin"), ("tray", "tray"), ("pad_left", "pad"),
                        ("finger_left_bar", "finger")):
         key = f"{name}_friction" if f"{name}_friction" in values else "tube_friction"

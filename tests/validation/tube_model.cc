@@ -47,7 +47,7 @@ std::string TubeModel(const std::string& path) {
   if (const auto ratio = scene.Optional("impratio")) engine.impratio = ratio->AsNumber(0.1, 1e4);
   MjSpec spec = MakeSpec(engine);
   const TubeBodyOptions options =
-      MakeTubeBodyOptions(part, NominalPhysics(part), RigidTransform::Identity());
+      MakeTubeBodyOptions(part, NominalPhysics(part), RigidTransform::Identity(), 0);
   const TubeBody body(*spec, "tube0", tube, options);
   Compile(*spec, "the tube");
   return Xml(*spec);

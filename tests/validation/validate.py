@@ -19,22 +19,6 @@ ROOT = os.path.realpath(os.path.join(HERE, "..", ".."))
 
 # Checks known to fail, and why. A check leaves this list when it passes.
 KNOWN = {
-    "first free-free bending mode": "damping of 0.02 s times the stiffness",
-    "second free-free bending mode": "the same",
-    "damping ratio of the first mode": "no loss factor is stated; the engine's implicit steps of 1 ms add 0.05",
-    "damping 20 % too large: checks that then fail": "the same",
-    "hook's compliance out of its plane": "links do not twist",
-    "14 links: hook's compliance out of its plane": "links do not twist",
-    "20 links: hook's compliance out of its plane": "links do not twist",
-    "40 links: hook's compliance out of its plane": "links do not twist",
-    "torsional stiffness G J": "links do not twist",
-    "check_bending.michell can be made": "links do not twist",
-    "check_helix.helix can be made": "links do not twist",
-    "Michell's ring: twist at which it leaves its plane": "links do not twist",
-    "pvc_a: length from tip to tip": "round ends lie beyond the length",
-    "hose_b: length from tip to tip": "round ends lie beyond the length",
-    "tube on finger: slope at which it slides": "the larger of both coefficients wins",
-    "held tube turns between the pads: torque at 60 N": "two points at the pad's edges, and torsional friction",
     "pin of driver and coupler: farthest outside of the gripper's shapes": "shapes without the linkage",
     "pin of coupler and follower: farthest outside of the gripper's shapes": "shapes without the linkage",
 }

@@ -32,8 +32,8 @@ ScanGeometry GeometryOf(const Pile& pile) {
   const auto gloss = static_cast<float>(pile.part.gloss);
   for (std::size_t k = 0; k < pile.tubes.size(); ++k) {
     const Polyline line_B = Transformed(pile.bin.X_BN, pile.tubes[k].centerline_N);
-    for (std::size_t i = 1; i < line_B.size(); ++i) {
-      out.capsules.push_back({line_B[i - 1], line_B[i], pile.tubes[k].radius_m,
+    for (const AxisPiece& piece : PiecesWithin(line_B, pile.tubes[k].radius_m)) {
+      out.capsules.push_back({piece.from, piece.to, pile.tubes[k].radius_m,
                               kLabelFirstTube + static_cast<std::uint32_t>(k), albedo, gloss});
     }
   }

@@ -11,6 +11,8 @@ namespace {
 
 /// Links below this one stay out of contact: shoulder and upper arm turn above the plate.
 constexpr int kFirstLinkInContact = 3;
+/// Of a tube on painted metal: an assumption.
+constexpr double kHousingFriction = 0.3;
 
 void SetInertial(mjsBody& body, double mass_kg, const Vector3& centre_m, const Matrix3& inertia) {
   body.explicitinertial = 1;
@@ -53,8 +55,12 @@ void AddShape(mjsBody& body, const Shape& shape, const RigidTransform& X_BodySha
   geom->contype = contype;
   geom->conaffinity = contype == 0 ? 0 : static_cast<int>(kTubeBit);
   geom->condim = 4;
-  geom->friction[0] = 0.3;
+  geom->priority = 1;  // Paint and plastic, whatever the tube is.
+  geom->friction[0] = kHousingFriction;
+  geom->friction[1] = 0.002;
   geom->solref[0] = 0.005;
+  geom->solimp[0] = 0.95;
+  geom->solimp[1] = 0.99;
   const std::array<float, 4> rgba = shape.scanner ? std::array<float, 4>{0.10f, 0.10f, 0.11f, 1.0f}
                                     : shape.link == kFlangeBody
                                         ? std::array<float, 4>{0.30f, 0.31f, 0.33f, 1.0f}

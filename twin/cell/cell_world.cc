@@ -26,7 +26,7 @@ constexpr double kPlateThickness_m = 0.02;
 /// At rest tubes creep far less than this (impratio 100); what still rolls is faster.
 constexpr double kSleepSpeed_m_s = 2e-4;
 
-/// A box of the scene. Friction is that of the tubes: the material pair is drawn as one number.
+/// A box of the scene. Its friction wins over that of what touches it.
 void AddBox(mjSpec& spec, const std::string& name, const RigidTransform& X_BBox,
             const Vector3& half_m, double friction, const std::array<float, 4>& rgba) {
   mjsGeom* box = mjs_addGeom(mjs_findBody(&spec, "world"), nullptr);
@@ -37,9 +37,9 @@ void AddBox(mjSpec& spec, const std::string& name, const RigidTransform& X_BBox,
   box->contype = 0;
   box->conaffinity = kSceneAccepts;
   box->condim = 4;
+  box->priority = 1;
   box->friction[0] = friction;
   box->friction[1] = 0.002;
-  box->friction[2] = 0.0001;
   box->solref[0] = 0.005;
   box->solimp[0] = 0.95;
   box->solimp[1] = 0.99;
@@ -133,15 +133,15 @@ CellWorld::CellWorld(const Pile& pile, const CellModel& model, const RoundPhysic
   spec_->option.enableflags |= mjENBL_SLEEP;
   spec_->option.sleep_tolerance = kSleepSpeed_m_s;
   SetLooks(*spec_);
-  AddPlate(*spec_, model.layout, physics.tube_friction);
-  AddBinOnPlinth(*spec_, pile.bin, model.layout.plate_z_m, physics.tube_friction);
-  AddTray(*spec_, model.layout, physics.tube_friction);
-  AddStanding(*spec_, model, physics.tube_friction);
+  AddPlate(*spec_, model.layout, physics.tray_friction);
+  AddBinOnPlinth(*spec_, pile.bin, model.layout.plate_z_m, physics.bin_friction);
+  AddTray(*spec_, model.layout, physics.tray_friction);
+  AddStanding(*spec_, model, physics.tray_friction);
   mjsBody& tool = AddArm(*spec_, model);
   AddGripper(*spec_, tool, model, physics);
-  const TubeBodyOptions tube_options = MakeTubeBodyOptions(pile.part, physics, pile.bin.X_BN);
   for (const PileTube& tube : pile.tubes) {
-    tubes_.emplace_back(*spec_, "tube" + std::to_string(tube.id), tube, tube_options);
+    tubes_.emplace_back(*spec_, "tube" + std::to_string(tube.id), tube,
+                        MakeTubeBodyOptions(pile.part, physics, pile.bin.X_BN, tube.id));
   }
 
   CompileWithStart(HomePosition(model, pile.bin));

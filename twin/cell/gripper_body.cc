@@ -16,6 +16,10 @@ constexpr double kCarriageMass_kg = 0.05;
 constexpr double kLinkMass_kg = 0.02;
 
 constexpr double kPadHalfThickness_m = 0.003;
+/// What lies beside a pad's middle half is this much lower.
+constexpr double kPadStep_m = 0.001;
+/// Of a tube on bare aluminium: an assumption.
+constexpr double kFingerFriction = 0.3;
 
 void SetInertial(mjsBody& body, double mass_kg, const Vector3& centre_m, double ixx, double iyy,
                  double izz) {
@@ -40,25 +44,24 @@ mjsJoint& AddSlide(mjsBody& body, const char* name, const Vector3& axis, double 
   return *joint;
 }
 
-/// The pad as measured: priority 1, so that its friction and stiffness win over the tube's.
-void AddPad(mjsBody& finger, const char* name, const GripperSpec& gripper,
-            const RoundPhysics& physics) {
+/// A geom of a pad: priority 2, so that its friction and stiffness win over the tube's, and over
+/// the bin's where a pad touches that.
+void AddPadBox(mjsBody& finger, const std::string& name, const Vector3& centre,
+               const Vector3& half_m, const RoundPhysics& physics) {
   mjsGeom* pad = mjs_addGeom(&finger, nullptr);
   SetName(pad->element, name);
   pad->type = mjGEOM_BOX;
-  pad->size[0] = 0.5 * gripper.pad_width_m;
-  pad->size[1] = kPadHalfThickness_m;
-  pad->size[2] = 0.5 * gripper.pad_height_m;
+  for (int k = 0; k < 3; ++k) pad->pos[k] = centre[k];
+  for (int k = 0; k < 3; ++k) pad->size[k] = half_m[k];
   pad->mass = 0.0;
-  pad->priority = 1;
+  pad->priority = 2;
   pad->condim = 4;
   pad->friction[0] = physics.pad_friction;
   pad->friction[1] = physics.pad_torsion_m;
-  pad->friction[2] = 0.0001;
   pad->solref[0] = 0.005;
   pad->solref[1] = 1.0;
-  pad->solimp[0] = 0.99;
-  pad->solimp[1] = 0.999;
+  pad->solimp[0] = 0.999;
+  pad->solimp[1] = 0.9999;
   pad->solimp[2] = 0.001;
   pad->contype = kGripperBit;
   pad->conaffinity = kTubeBit;
@@ -66,12 +69,29 @@ void AddPad(mjsBody& finger, const char* name, const GripperSpec& gripper,
   std::copy(rgba, rgba + 4, pad->rgba);
 }
 
+/// A pad of half width a that grips a tube along a line of even pressure resists its pivoting with
+/// mu N a / 2. The engine has two points of contact, at the edges of a box, with half of the force
+/// each: at +- a / 2 they resist as the line does. So the box that grips is half as wide as the
+/// pad; what lies beside it is lower by a step, for tubes that come across. `side` +1 at +y.
+void AddPad(mjsBody& finger, double side, const std::string& name, const GripperSpec& gripper,
+            const RoundPhysics& physics) {
+  const double half_width_m = 0.5 * gripper.pad_width_m, half_height_m = 0.5 * gripper.pad_height_m;
+  AddPadBox(finger, name, Vector3::Zero(), {0.5 * half_width_m, kPadHalfThickness_m, half_height_m},
+            physics);
+  AddPadBox(finger, name + "_rim", Vector3(0, 0.5 * side * kPadStep_m, 0),
+            {half_width_m, kPadHalfThickness_m - 0.5 * kPadStep_m, half_height_m}, physics);
+}
+
 /// Without mass: its body has that.
 void LookLikeFinger(mjsGeom& geom) {
   geom.mass = 0.0;
   geom.condim = 4;
-  geom.friction[0] = 0.3;
+  geom.priority = 1;
+  geom.friction[0] = kFingerFriction;
+  geom.friction[1] = 0.002;
   geom.solref[0] = 0.005;
+  geom.solimp[0] = 0.95;
+  geom.solimp[1] = 0.99;
   geom.contype = kGripperBit;
   geom.conaffinity = kTubeBit;
   const float rgba[4] = {0.25f, 0.25f, 0.27f, 1.0f};
@@ -88,7 +108,7 @@ void AddFinger(mjsBody& carriage, double side, const char* joint_name, const cha
   mjsJoint& slide = AddSlide(*finger, joint_name, Vector3(0, -side, 0), 0.5 * gripper.stroke_m);
   slide.armature = 0.1;
   slide.damping[0] = 2.0;
-  AddPad(*finger, pad_name, gripper, physics);
+  AddPad(*finger, side, pad_name, gripper, physics);
 
   mjsGeom* bar = mjs_addGeom(finger, nullptr);
   SetName(bar->element, std::string(joint_name) + "_bar");

@@ -199,7 +199,7 @@ MjModel CompileStage(const Pile& pile, const std::vector<std::array<double, 3>>&
   // A table under the bin, level with it whatever the bin's tilt.
   AddGround(*spec, pile.bin.X_BN * Translation(0, 0, -Bin::kWallThickness_m), bin);
   TubeBodyOptions tube_options =
-      MakeTubeBodyOptions(pile.part, NominalPhysics(pile.part), pile.bin.X_BN);
+      MakeTubeBodyOptions(pile.part, NominalPhysics(pile.part), pile.bin.X_BN, 0);
   for (std::size_t i = 0; i < pile.tubes.size(); ++i) {
     tube_options.colour_rgb = colours[i];
     TubeBody(*spec, "tube_" + std::to_string(pile.tubes[i].id), pile.tubes[i], tube_options);
