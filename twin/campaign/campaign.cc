@@ -39,7 +39,7 @@ std::string VariantName(const std::string& given, bool alone, const ConfigSource
   if (variant.scenario.profile != Scenario().profile) parts.push_back(variant.scenario.profile);
   for (const auto& [key, value] : keys.Texts()) {
     if (key == "pile.part" || key == "pile.count" || key == "profile") continue;
-    parts.push_back(key + "=" + value);
+    parts.emplace_back(key).append("=").append(value);
   }
   return Join(parts);
 }
@@ -233,7 +233,7 @@ Campaign LoadCampaign(const std::string& path, const std::vector<std::string>& o
       // A part or pile that is not there does not say who asked for it.
       const std::string what = error.what();
       if (what.starts_with(path) || what.starts_with("--set")) throw;
-      throw Error(error.kind(), where + ": " + what);
+      throw Error(error.kind(), std::string(where).append(": ").append(what));
     }
     RequireFewRounds(campaign, path);
   }
