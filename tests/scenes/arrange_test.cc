@@ -26,10 +26,7 @@ double LargestGap(const Pile& a, const Pile& b) {
 
 // The axis of the solid: within the tube's round ends.
 Polyline CoreOf(const PileTube& tube) {
-  const std::vector<AxisPiece> pieces = PiecesWithin(tube.centerline_N, tube.radius_m);
-  Polyline core = {pieces.front().from};
-  for (const AxisPiece& piece : pieces) core.push_back(piece.to);
-  return core;
+  return SubLine(tube.centerline_N, tube.radius_m, Length(tube.centerline_N) - tube.radius_m);
 }
 
 double DeepestOverlap(const Pile& pile) {

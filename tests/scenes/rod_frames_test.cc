@@ -7,6 +7,7 @@
 #include "scenes/engine/stepping.h"
 #include "scenes/tube_body.h"
 #include "tests/support/catch.h"
+#include "tests/support/clamp.h"
 
 namespace tubetwin {
 namespace {
@@ -101,12 +102,7 @@ double QuarterCircleSag(int links, double radius_m, double load_N) {
   mjsBody* clamped = mjs_findBody(spec.get(), body.body_names()[0].c_str());
   clamped->mass = 1.0;
   for (double& inertia : clamped->inertia) inertia = 0.01;
-  mjsEquality* weld = mjs_addEquality(spec.get(), nullptr);
-  weld->type = mjEQ_WELD;
-  weld->objtype = mjOBJ_BODY;
-  SetString(weld->name1, body.body_names()[0]);
-  weld->solref[0] = 0.004;
-  weld->solimp[0] = weld->solimp[1] = 0.9999;
+  test::ClampFirstLink(*spec, body);
   MjModel model = Compile(*spec, "quarter circle");
   for (double& g : model->opt.gravity) g = 0.0;
   body.Bind(*model);

@@ -7,6 +7,7 @@
 #include "scenes/engine/mj_handles.h"
 #include "scenes/engine/stepping.h"
 #include "tests/support/catch.h"
+#include "tests/support/clamp.h"
 
 namespace tubetwin {
 namespace {
@@ -88,12 +89,7 @@ TEST_CASE("A clamped hose sags as beam theory says", "[physics]") {
     options.bending_stiffness_Nm2 = stiffness;
     MjSpec spec = MakeSpec();
     TubeBody body(*spec, "hose", tube, options);
-    mjsEquality* weld = mjs_addEquality(spec.get(), nullptr);
-    weld->type = mjEQ_WELD;
-    weld->objtype = mjOBJ_BODY;
-    SetString(weld->name1, body.body_names()[0]);
-    weld->solref[0] = 0.004;
-    weld->solimp[0] = weld->solimp[1] = 0.9999;
+    test::ClampFirstLink(*spec, body);
     MjModel model = Compile(*spec, "cantilever");
     body.Bind(*model);
     MjData data = MakeData(*model);
