@@ -1,6 +1,7 @@
 #include "scenes/bin_body.h"
 
 #include "scenes/engine/mj_handles.h"
+#include "scenes/engine/surface.h"
 
 namespace tubetwin {
 namespace {
@@ -16,15 +17,8 @@ mjsGeom* AddGeom(mjSpec& spec, const std::string& name, mjtGeom type, const Rigi
     geom->rgba[k] = static_cast<float>(options.colour_rgb[k]);
   }
   geom->rgba[3] = 1.0f;
-  geom->condim = 4;
-  geom->priority = 1;  // The bin's friction and not the larger of both sides.
-  geom->friction[0] = options.friction;
-  geom->friction[1] = 0.002;
-  geom->solref[0] = options.contact_time_s;
-  geom->solref[1] = 1.0;
-  geom->solimp[0] = 0.95;
-  geom->solimp[1] = 0.99;
-  geom->solimp[2] = 0.001;
+  // The bin's friction and not the larger of both sides.
+  SetSurface(*geom, options.friction, 1, options.contact_time_s);
   return geom;
 }
 

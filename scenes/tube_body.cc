@@ -6,6 +6,7 @@
 
 #include "models/base/error.h"
 #include "scenes/engine/mj_handles.h"
+#include "scenes/engine/surface.h"
 #include "scenes/rod/rod_frames.h"
 
 namespace tubetwin {
@@ -109,14 +110,8 @@ void TubeBody::AddCapsule(mjsBody* body, int index, const Vector3& from, const V
   }
   geom->rgba[3] = 1.0f;
   geom->mass = 0.0;  // The body's inertia is given; capsules overlap at the nodes.
-  geom->condim = 4;
-  geom->friction[0] = options_.friction;
+  SetSurface(*geom, options_.friction, 0, options_.contact_time_s);
   geom->friction[1] = options_.torsion_m;
-  geom->solref[0] = options_.contact_time_s;
-  geom->solref[1] = 1.0;
-  geom->solimp[0] = 0.95;
-  geom->solimp[1] = 0.99;
-  geom->solimp[2] = 0.001;
 }
 
 void TubeBody::BuildRigid(mjSpec& spec) {

@@ -10,6 +10,7 @@
 #include "planner/scene_query/sweep.h"
 #include "scenes/bin_body.h"
 #include "scenes/engine/engine_error.h"
+#include "scenes/engine/surface.h"
 
 namespace tubetwin {
 namespace {
@@ -192,13 +193,7 @@ void RolloutScene::AddFingers(mjsBody& hand, const GripperGeometry& gripper, dou
     for (int k = 0; k < 3; ++k) geom->pos[k] = box.X_AB.translation()[k];
     for (int k = 0; k < 3; ++k) geom->size[k] = box.half_m[k];
     geom->mass = 0.0;
-    geom->priority = 1;
-    geom->condim = 4;
-    geom->friction[0] = kHandFriction;
-    geom->friction[1] = 0.002;
-    geom->solref[0] = contact_s;
-    geom->solimp[0] = 0.95;
-    geom->solimp[1] = 0.99;
+    SetSurface(*geom, kHandFriction, 1, contact_s);
     geom->contype = kHandBit;
     geom->conaffinity = 0;
   }

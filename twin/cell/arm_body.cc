@@ -4,6 +4,7 @@
 #include <array>
 
 #include "scenes/engine/mj_handles.h"
+#include "scenes/engine/surface.h"
 #include "twin/cell/contact_bits.h"
 
 namespace tubetwin {
@@ -54,13 +55,7 @@ void AddShape(mjsBody& body, const Shape& shape, const RigidTransform& X_BodySha
   geom->mass = 0.0;
   geom->contype = contype;
   geom->conaffinity = contype == 0 ? 0 : static_cast<int>(kTubeBit);
-  geom->condim = 4;
-  geom->priority = 1;  // Paint and plastic, whatever the tube is.
-  geom->friction[0] = kHousingFriction;
-  geom->friction[1] = 0.002;
-  geom->solref[0] = 0.005;
-  geom->solimp[0] = 0.95;
-  geom->solimp[1] = 0.99;
+  SetSurface(*geom, kHousingFriction, 1, kContactTime_s);
   const std::array<float, 4> rgba = shape.scanner ? std::array<float, 4>{0.10f, 0.10f, 0.11f, 1.0f}
                                     : shape.link == kFlangeBody
                                         ? std::array<float, 4>{0.30f, 0.31f, 0.33f, 1.0f}

@@ -11,6 +11,7 @@
 #include "scenes/bin_body.h"
 #include "scenes/engine/engine_error.h"
 #include "scenes/engine/stepping.h"
+#include "scenes/engine/surface.h"
 #include "twin/cell/arm_body.h"
 #include "twin/cell/contact_bits.h"
 #include "twin/cell/gripper_body.h"
@@ -36,13 +37,7 @@ void AddBox(mjSpec& spec, const std::string& name, const RigidTransform& X_BBox,
   for (int k = 0; k < 3; ++k) box->size[k] = half_m[k];
   box->contype = 0;
   box->conaffinity = kSceneAccepts;
-  box->condim = 4;
-  box->priority = 1;
-  box->friction[0] = friction;
-  box->friction[1] = 0.002;
-  box->solref[0] = 0.005;
-  box->solimp[0] = 0.95;
-  box->solimp[1] = 0.99;
+  SetSurface(*box, friction, 1, kContactTime_s);
   std::copy(rgba.begin(), rgba.end(), box->rgba);
 }
 

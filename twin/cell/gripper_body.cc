@@ -7,6 +7,7 @@
 
 #include "models/base/error.h"
 #include "scenes/engine/mj_handles.h"
+#include "scenes/engine/surface.h"
 #include "twin/cell/contact_bits.h"
 
 namespace tubetwin {
@@ -54,15 +55,10 @@ void AddPadBox(mjsBody& finger, const std::string& name, const Vector3& centre,
   for (int k = 0; k < 3; ++k) pad->pos[k] = centre[k];
   for (int k = 0; k < 3; ++k) pad->size[k] = half_m[k];
   pad->mass = 0.0;
-  pad->priority = 2;
-  pad->condim = 4;
-  pad->friction[0] = physics.pad_friction;
+  SetSurface(*pad, physics.pad_friction, 2, kContactTime_s);
   pad->friction[1] = physics.pad_torsion_m;
-  pad->solref[0] = 0.005;
-  pad->solref[1] = 1.0;
   pad->solimp[0] = 0.999;
   pad->solimp[1] = 0.9999;
-  pad->solimp[2] = 0.001;
   pad->contype = kGripperBit;
   pad->conaffinity = kTubeBit;
   const float rgba[4] = {0.15f, 0.15f, 0.16f, 1.0f};
@@ -85,13 +81,7 @@ void AddPad(mjsBody& finger, double side, const std::string& name, const Gripper
 /// Without mass: its body has that.
 void LookLikeFinger(mjsGeom& geom) {
   geom.mass = 0.0;
-  geom.condim = 4;
-  geom.priority = 1;
-  geom.friction[0] = kFingerFriction;
-  geom.friction[1] = 0.002;
-  geom.solref[0] = 0.005;
-  geom.solimp[0] = 0.95;
-  geom.solimp[1] = 0.99;
+  SetSurface(geom, kFingerFriction, 1, kContactTime_s);
   geom.contype = kGripperBit;
   geom.conaffinity = kTubeBit;
   const float rgba[4] = {0.25f, 0.25f, 0.27f, 1.0f};
